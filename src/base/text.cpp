@@ -59,6 +59,7 @@ double number_in(std::string_view text) {
 }
 
 std::string percent(double share, int digits) {
+  if (share > 0.0 && share < kSmallestShare) return "below " + with_digits(100.0 * kSmallestShare, digits) + " %";
   return with_digits(100.0 * share, digits) + " %";
 }
 

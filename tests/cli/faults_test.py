@@ -160,6 +160,20 @@ class AnotherUser(Faults):
                    arguments=["sources", "--dem", self.path("dem.tif"), "--slope", "30", "-o", "cells.gpkg"], **self.user)
         self.assertEqual({folder: sorted(os.listdir(self.path(folder))) for folder in before}, before)
 
+    def test_a_name_that_cannot_be_looked_at_when_the_run_is_done(self):  # all its results were removed
+        os.mkdir(self.path("theirs"))
+        os.chmod(self.path("theirs"), 0o777)
+        self.begin[-1] = self.path("theirs/out")
+        process = self.start("--trajectories", "1000", **self.user)
+        self.wait_for_progress(process, 1)
+        os.mkdir(self.path("theirs/out"), 0)
+        self.addCleanup(os.chmod, self.path("theirs/out"), 0o755)
+        error = process.communicate(timeout=60)[1]
+        self.assertEqual(process.returncode, 2, error)
+        self.assertIn("theirs/out: cannot be looked at (Permission denied); the results are kept in ", error)
+        (kept,) = [name for name in os.listdir(self.path("theirs")) if name.startswith(".out.talus-")]
+        self.assertTrue(os.path.exists(self.path(f"theirs/{kept}/run.json")), kept)
+
     def test_a_folder_in_place_of_the_terrain(self):
         """`sources` says what `run` says; it walked through all folders below, and ended with 1 at one that is closed."""
         os.makedirs(self.path("tiles/closed"))
@@ -295,10 +309,11 @@ class Streams(Faults):
             self.assert_same("whole", out)
 
     def test_a_full_standard_output(self):
-        with open("/dev/full", "w", encoding="utf-8") as full:
-            done = subprocess.run([TALUS, "check", self.path("s.toml")], stdout=full, stderr=subprocess.PIPE, text=True)
-        self.assertEqual(done.returncode, 1)
-        self.assertIn("the output cannot be written", done.stderr)
+        for command in (["check", self.path("s.toml")], ["--version"], ["help", "run"], ["help", "--json"], ["presets"]):
+            with open("/dev/full", "w", encoding="utf-8") as full:
+                done = subprocess.run([TALUS, *command], stdout=full, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 1, command)
+            self.assertIn("the output cannot be written", done.stderr)
 
     def test_a_full_standard_error(self):
         self.run_scenario("whole")

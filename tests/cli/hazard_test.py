@@ -267,6 +267,47 @@ class Hazard(Case):
         self.run_well("report", self.path("true"))
         self.assertIn("the classes of blocks keep their shares of the events", self.read_text("true/report.html"))
 
+    def test_few_paths_of_a_class_are_said_by_the_weighting_that_counts(self):  # that of the run was said, or none
+        """N(>= V) ~ V^-1/3 is 1/D: blocks of 0.5 to 1 m come twice as often as those of 1 to 2 m, of which 3200/1001 are drawn."""
+        self.place_sources([(box(100, 230, 20, 10), ["west"]), (box(200, 230, 20, 10), ["east"])], [("name", ogr.OFTString)])
+        write_features(self.path("lines.gpkg"), "lines", [("LINESTRING (2600020 1200150, 2600280 1200150)", ["road"])], [("id", ogr.OFTString)])
+        classes = "[{ diameter = [0.5, 1], weight = 1000, frequency = 1 }, { diameter = [1, 2], frequency = 0.1 }]"
+        self.write("s.toml", RUN.replace("0.8", classes) + "[screens]\nfile = 'lines.gpkg'\n")
+        self.simulate()
+        law = self.write("w.toml", "[frequency]\npower_law = { A = 0.1, b = 0.3333333333333333 }\n")
+        for more, share in (((), "9.09"), (("--frequency", law), "33.3")):
+            self.run_well("hazard", self.path("out"), "--overwrite", "-q", *more)
+            self.run_well("barrier", self.path("out"), "--percentile", "50", "-q", *more)
+            for said in (self.read_json("out/hazard.json")["warnings"], self.read_json("out/barrier_road.json")["notes"]):
+                (text,) = [one for one in said if "few paths stand for all events of a class" in one]
+                self.assertIn(f"class: 1 to 2 m ({share} % of the events, about 3.2 of 3200 blocks in a round)", text)
+
+    def test_cells_of_several_features_are_said(self):  # per_area counted them twice without a word
+        """8 cells of 25 m2 of two features: 0.001 events per m2 and year are 0.2 of each."""
+        fields, once = [("name", ogr.OFTString)], "sources overlap: 8 of 8 cells lie in more than one feature and release the blocks of each"
+        twice = once + ", so that frequency.per_area counts {} events per year more than once"
+        self.place_sources([(box(100, 230, 20, 10), ["a"]), (box(100, 230, 20, 10), ["b"])], fields)
+        self.write("s.toml", RUN.replace("200", "20") + "[frequency]\nper_area = 0.001\n")
+        self.simulate()
+        self.assertIn(twice.format(0.2), self.run_well("check", self.path("s.toml")).stdout)
+        self.assertIn(twice.format(0.2), self.run_well("hazard", self.path("out")).stderr)
+        record = self.read_json("out/hazard.json")
+        self.assertEqual(sum("sources overlap" in warning for warning in record["warnings"]), 1)
+        self.assertAlmostEqual(record["events_per_year"], 0.4, 9)
+        more = self.write("w.toml", "[frequency]\nper_area = 0.002\n")
+        said = self.run_well("hazard", self.path("out"), "--overwrite", "--frequency", more).stderr
+        self.assertIn(twice.format(0.4), said)
+        self.assertNotIn(twice.format(0.2), said)
+        for rules, shapes, words in (("", [("a",), ("b",)], once + ": join"),
+                                     ("", [("a", 0.1), ("b", 0.2)], None)):  # each has events of its own
+            self.write("s.toml", RUN.replace("200", "20") + rules)
+            self.place_sources([(box(100, 230, 20, 10), list(values)) for values in shapes],
+                               [*fields, ("frequency", ogr.OFTReal)][:len(shapes[0])])
+            said = self.run_well("check", self.path("s.toml")).stdout
+            self.assertIn(words, said) if words else self.assertNotIn("sources overlap", said)
+        self.place_sources([(box(100, 230, 20, 10), ["a"]), (box(120, 230, 20, 10), ["b"])], fields)  # side by side
+        self.assertNotIn("sources overlap", self.run_well("check", self.path("s.toml")).stdout)
+
     def test_another_weighting_that_says_too_little_or_too_much(self):
         """In words of its own: there were those of a scenario, with the flag --field that talus hazard does not have."""
         self.classes_run("out")
@@ -463,7 +504,8 @@ class Hazard(Case):
         table = self.read_table("out/objects.csv")
         self.assertEqual([(row["object"], row["name"], row["people"]) for row in table],
                          [("A", "A", "3"), ("B", "B", "4"), ("C", "C", "1")])
-        self.assertEqual(list(table[0])[1:], list(rows["A"]))  # the columns of the layer, after object
+        self.assertEqual(list(table[0]), list(rows["A"]))  # the columns of the layer
+        self.assertEqual([rows[name]["object"] for name in "ABC"], ["A", "B", "C"])
         self.assertAlmostEqual(float(table[0]["frequency"]), rows["A"]["frequency"], 6)
         self.assertEqual(rows["C"]["trajectories"], 0)
         self.assertEqual(rows["C"]["frequency"], 0.0)
@@ -518,11 +560,11 @@ class Hazard(Case):
         self.simulate()
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
         words = ("houses.gpkg: fields named as columns of the results are not copied into objects.gpkg and objects.csv: "
-                 "Frequency, sources, object (in objects.csv); rename them to keep them")
+                 "Frequency, sources, object; rename them to keep them")
         self.assertIn(words, done.stderr)
         self.assertEqual(sum(words in warning for warning in self.read_json("out/hazard.json")["warnings"]), 1)
         ((row, _),) = rows_of(self.path("out/objects.gpkg"), "objects")
-        self.assertEqual([row["people"], row["object"]], [3, "x"])
+        self.assertEqual([row["people"], row["object"]], [3, "A"])
         self.assertLessEqual(row["frequency"], 0.5)
         self.assertIn("west", row["sources"])
 
@@ -547,7 +589,7 @@ class Hazard(Case):
         z[28:32, 20:24] = -9999.0  # no height from x = 97.5 to 122.5 and y = 137.5 to 162.5
         write_dem(self.path("dem.tif"), z, nodata=-9999.0)
         road = f"LINESTRING ({2600000 + 1} {1200000 + 50},{2600000 + 1} {1200000 + 250})"
-        shapes = [(box(105, 145, 10, 8), ["gap"]), (road, ["edge"]), (box(280, 100, 350, 20), ["mostly off"]),
+        shapes = [(box(97.6, 137.6, 24.8, 24.8), ["gap"]), (road, ["edge"]), (box(280, 100, 350, 20), ["mostly off"]),
                   (box(205, 150, 10, 8), ["well"]), (box(102.5, 157.5, 10, 20), ["rim"]), (box(5000, 0, 9, 9), ["far"])]
         write_features(self.path("o.gpkg"), "o", shapes, [("name", ogr.OFTString)])
         self.simulate()
@@ -560,8 +602,11 @@ class Hazard(Case):
         self.assertNotRegex(done.stderr, r"talus: (gap|edge|far): ")
         self.assertNotRegex(done.stderr, r"talus: well: .* is not assessed")
         rows = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
-        for name in ("gap", "edge", "far"):
-            self.assertEqual([rows[name][key] for key in ("trajectories", "frequency", "frequency_upper")], [None] * 3, name)
+        table = {row["object"]: row for row in self.read_table("out/objects.csv")}
+        for name in ("gap", "edge", "far"):  # blocks touch the rim of the gap: it had a return period
+            self.assertEqual([key for key, value in rows[name].items() if value], ["object", "name"], name)
+            self.assertEqual([key for key, value in table[name].items() if value], ["object", "name"], name)
+            self.assertIsNone(rows[name]["frequency"])
         self.assertIsNotNone(rows["mostly off"]["frequency"])
         write_features(self.path("far.gpkg"), "o", [(box(5000, 0, 9, 9), ["far"])], [("name", ogr.OFTString)])
         self.fails(2, "far.gpkg: lies wholly off the DEM: its features reach over east 2605000 to 2605009",
@@ -613,6 +658,48 @@ class Hazard(Case):
         self.assertEqual([row["built"] for row in rows], ["2020-01-01", "", "x"])
         self.assertEqual([row["people"] for row in rows], [5, None, -3])
         self.assertEqual([row["value"] for row in rows], [1.5, 2.0, None])
+
+    def test_ids_of_a_table_stay_as_they_stand(self):
+        """They became 1.1, 1.1; 43123456, 7; 1000, 2000. Numbers stay numbers, however people write them."""
+        self.simulate()
+        rows = {"id": ("1.10", "1.1"), "phone": ("+43123456", "7"), "code": ("1e3", "2e3"), "plot": ("01.50", "2.50"),
+                "height": ("0.50", "-12.0"), "share": ("1e-05", ".25"), "floors": ("0", "12")}
+        text = "wkt," + ",".join(rows) + "\n"
+        for i, x in enumerate((105, 205)):
+            text += ",".join([f'"{box(x, 150, 10, 8)}"', *(cells[i] for cells in rows.values())]) + "\n"
+        self.run_well("hazard", self.path("out"), "--objects", self.write("o.csv", text), "-q")
+        table = self.read_table("out/objects.csv")
+        layer = [row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")]
+        for name in ("id", "phone", "code", "plot"):
+            for found in (table, layer):
+                self.assertEqual(tuple(row[name] for row in found), rows[name])
+        self.assertEqual([row["object"] for row in layer], ["1.10", "1.1"])
+        for name, numbers in (("height", [0.5, -12.0]), ("share", [1e-5, 0.25]), ("floors", [0, 12])):
+            self.assertEqual([row[name] for row in layer], numbers)
+            self.assertEqual([float(row[name]) for row in table], numbers)
+
+    def test_lists_of_objects_are_written_as_json(self):  # (2:a,b)
+        self.simulate()
+        given = {"tags": ["a", "b, \"c\""], "floors": [1, 2], "heights": [0.5, 12.25]}
+        geometry = json.loads(ogr.CreateGeometryFromWkt(box(105, 150, 10, 8)).ExportToJson())
+        self.write("o.geojson", json.dumps({"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "EPSG:2056"}},
+                                            "features": [{"type": "Feature", "properties": given, "geometry": geometry}]}))
+        self.run_well("hazard", self.path("out"), "--objects", self.path("o.geojson"), "-q")
+        (table,), ((layer, _),) = self.read_table("out/objects.csv"), rows_of(self.path("out/objects.gpkg"), "objects")
+        for row in (table, layer):
+            self.assertEqual({name: json.loads(row[name]) for name in given}, given)
+
+    def test_frequencies_of_any_size(self):
+        """More years than a float holds are no value of a map (they were infinite), and the tables of such a run can be reported."""
+        self.place_sources([(box(100, 230, 20, 10), ["west", 1e-60]), (box(200, 230, 20, 10), ["east", 1e-60])])
+        write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A"])], [("name", ogr.OFTString)])
+        self.simulate()
+        self.run_well("hazard", self.path("out"), "-q", "--objects", self.path("houses.gpkg"))
+        self.assertTrue((bands_of(self.path("out/return_period_30.tif")) == -9999).all())
+        (house,) = self.read_table("out/objects.csv")
+        self.assertGreaterEqual(float(house["return_period"]), 1e60)  # at most as often as a block falls
+        self.run_well("report", self.path("out"), "-q")
+        self.assertIn(f"<td class='n'>{float(house['return_period']):.3g}</td>", self.read_text("out/report.html"))
 
     def titles(self, name):
         """Title of a raster, and names of its bands."""
@@ -696,7 +783,7 @@ class Hazard(Case):
             done = self.run_well("hazard", self.path("out"), "--objects", self.path("roads.gpkg"), "--overwrite", *more)
             self.assertIn("lines: 1 as wide as their field width says; 1 without a field width, taken as " + width + " m wide", done.stderr)
             found[width] = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
-        without_name = lambda row: {k: v for k, v in row.items() if k not in ("name", "width")}
+        without_name = lambda row: {k: v for k, v in row.items() if k not in ("object", "name", "width")}
         self.assertEqual(without_name(found["6"]["path"]), without_name(found["6"]["road"]))
         self.assertEqual(found["0"]["road"], found["20"]["road"])
         self.assertGreaterEqual(found["20"]["path"]["trajectories"], found["0"]["path"]["trajectories"])

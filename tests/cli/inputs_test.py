@@ -391,6 +391,17 @@ class Shapefiles(InputCase):
             file.write(whole)
         self.run_well("check", *self.flags("c.shp"))
 
+    def test_fields_that_are_not_in_an_archive(self):  # they were lost in silence
+        write_shapefile(self.path("c.shp"), [2.5, 2.5, 3.5])
+        for name in ("c.shz", "c.shp.zip"):
+            for ends in (("shp", "shx", "prj", "dbf"), ("shp", "shx", "prj")):
+                with zipfile.ZipFile(self.path(name), "w") as archive:
+                    for end in ends:
+                        archive.write(self.path("c." + end), "c." + end)
+                if "dbf" in ends:
+                    self.assertIn("diameter 2.5 to 3.5 m (3 of 3", self.run_well("check", *self.flags(name)).stdout)
+            self.refused(f"{name}}}/c.shp: the fields of its features are in c.dbf, which is not there", "ogr2ogr c.gpkg ", sources=name)
+
     def test_a_name_of_fourteen_letters_is_cut(self):
         file = ogr.GetDriverByName("ESRI Shapefile").CreateDataSource(self.path("c.shp"))
         layer = file.CreateLayer("cliffs", system(2056), ogr.wkbPoint)

@@ -12,7 +12,7 @@ import unittest
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import TALUS, Case, RunCase, box, heights, rows_of, system, write_dem, write_features
+from support import NORTH, TALUS, WEST, Case, RunCase, box, heights, rows_of, system, write_dem, write_features
 
 BARRIER_PICTURE = os.path.join(os.path.dirname(__file__), "../../tools/scripts/figures/barrier_picture.py")
 
@@ -129,6 +129,18 @@ class Elevations(Case):
             with self.subTest(band):
                 self.fails(2, "d.vrt", "band 1", *words, arguments=self.dem(band=band))
 
+    def test_a_band_of_transparency_that_says_nothing(self):  # GDAL has none for real numbers: no data were ground
+        dem = gdal.GetDriverByName("GTiff").Create(self.path("a.tif"), 60, 60, 2, gdal.GDT_Float32, ["ALPHA=YES"])
+        dem.SetGeoTransform((WEST, 5.0, 0.0, NORTH, 0.0, -5.0))
+        dem.SetProjection(system(2056).ExportToWkt())
+        dem.GetRasterBand(1).WriteArray(900.0 + 3.0 * np.arange(60)[:, None] + np.zeros((60, 60)))
+        dem.FlushCache()
+        check = ["check", "--dem", self.path("a.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "0.8"]
+        self.fails(2, "a.tif", "transparency", "-dstnodata", arguments=check)
+        dem.GetRasterBand(1).SetNoDataValue(-9999.0)
+        dem.FlushCache()
+        self.run_well(*check)
+
     def test_heights_in_other_units(self):
         for unit, word, factor in (("cm", "centimetres", "A*0.01'"), ("km", "kilometres", "A*1000'"),
                                    ("Millimeter", "millimetres", "A*0.001'"), ("ft", "feet", "A*0.3048'"),
@@ -237,6 +249,11 @@ class Places(Case):
         write_features(self.path("s.gpkg"), "s", [("POINT (1e300 1200250)", [])])
         self.fails(2, "s.gpkg", "feature 1", "none on the earth", arguments=self.check("s.gpkg"))
 
+    def test_types_beside_a_table(self):  # a diameter of 1.9 m was 1, a frequency of 0.7 was 0
+        self.write("t.csv", f"x,y,diameter\n{WEST + 150},{NORTH - 60},1.9\n")
+        self.write("t.csvt", "Real,Real,Integer\n")
+        self.fails(2, "t.csvt", "remove it", arguments=self.check("t.csv"))
+
     def test_a_geopackage_without_a_system(self):
         """As docs/scenario.md says: taken to be in the system of the DEM, with a warning."""
         file = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("s.gpkg"))
@@ -305,6 +322,22 @@ class Options(Case):
                             (("--thresholds", "'30,' has an empty item"), ["--thresholds=30,"])):
             self.fails(2, *words, arguments=[*self.arguments(), *more])
         self.fails(2, "--fit", "empty item", arguments=["calibrate", "campaign.toml", "-o", "fit", "--fit", "En50,,phi"])
+
+    def test_empty_values(self):  # of a variable of a script that is not set: the default was taken without a word
+        scenario, out = self.write("e.toml", 'dem = "dem.tif"\n'), self.path("out")
+        for option, arguments in (("--frequency", self.arguments()), ("--deformation-coefficient", self.arguments()),
+                                  ("--seed", self.arguments()), ("--matrix", ["hazard", out]), ("--objects", ["hazard", out]),
+                                  ("--observed", ["barrier", out]), ("--volume", ["barrier", out]), ("--out", ["report", out]),
+                                  ("--source", ["trace", scenario, "--block", "1"]), ("--pits", ["check", scenario])):
+            for empty in ([option, ""], [option + "="]):
+                self.fails(2, option, "empty value", arguments=[*arguments, *empty])
+        for command in (["check", ""], ["profile", "", "-o", out], ["calibrate", "", "-o", out]):
+            self.fails(2, "empty value", arguments=command)
+        self.fails(2, "as a layer of a file", arguments=[*self.arguments()[:-1], self.path("x|layername=y")])
+
+    def test_a_text_with_a_zero_byte(self):  # the message ended there
+        self.write("z.toml", 'dem = "dem.tif"\n[sources]\nfile = "a\\u0000b"\n')
+        self.fails(2, "z.toml:3: a text has the character of number 0", arguments=["check", self.path("z.toml")])
 
     def test_a_file_of_settings_that_holds_none(self):
         """Whatever reads settings from a file of its own refuses one without any."""
@@ -505,6 +538,12 @@ class ForgedHazard(RunCase):
         self.fails(2, "hazard_tally.gz", *(words or ["is damaged"]), preexec_fn=limit, timeout=20,
                    arguments=["hazard", self.path("out"), "-q", "--threads", "1"])
         self.assertFalse(os.path.exists(self.path("out/hazard.json")))
+
+    def test_a_hazard_file_that_is_lost(self):  # "the run has no annual frequencies"
+        os.remove(self.path("out/hazard_tally.gz"))
+        for command in (["hazard", self.path("out")], ["barrier", self.path("out"), "--screen", "road"]):
+            self.fails(2, "hazard_tally.gz: is not there", arguments=command)
+        self.run_well("barrier", self.path("out"), "--screen", "road", "--unweighted")
 
     def test_the_forger_is_right(self):
         with gzip.open(self.path("out/hazard_tally.gz"), "wb") as file:

@@ -3,13 +3,14 @@ import json
 import math
 import os
 import re
+import subprocess
 import unittest
 import xml.dom.minidom
 
 import numpy as np
 from osgeo import ogr
 
-from support import NORTH, WEST, Case, rows_of, write_dem, write_features
+from support import NORTH, TALUS, WEST, Case, rows_of, write_dem, write_features
 
 TAN38 = math.tan(math.radians(38.0))
 
@@ -203,6 +204,17 @@ class Files(Profile):
         self.assertGreater(ground.GetPointCount(), 50)  # it has a node at each row that it crosses
         self.assertAlmostEqual(ground.GetPoint(ground.GetPointCount() - 1)[0], WEST + 120, 3)
 
+    def test_a_line_with_a_vertex_far_off_the_dem(self):  # each column of cells on the way there was listed: 4 GB
+        write_dem(self.path("dem.tif"), np.full((60, 60), 1000.0, np.float32))
+        write_features(self.path("line.gpkg"), "line", [(f"LINESTRING ({WEST + 50} {NORTH - 50}, 900000000 {NORTH - 50})", [])])
+        for surface in ("bilinear", "creased"):
+            self.scenario("x = 10", "", f'dem = "dem.tif"\nline = "line.gpkg"\nsurface = "{surface}"\n')
+            limit = ["bash", "-c", 'ulimit -v 2000000; exec "$@"', "-"]  # KiB
+            done = subprocess.run([*limit, TALUS, "profile", self.path("p.toml"), "-o", self.path("out")], capture_output=True,
+                                  text=True, check=False)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertRegex(done.stderr, r"no terrain under it (247\.5|250|252\.5) m from its start")  # last centre: at 297.5 m
+
     def test_terrain_that_the_step_leaves_out(self):
         """A dam of 3 m on the row at y = -57.5. Half-way between two rows, where the line crosses diagonals, it is 1.5 m.
         With nodes every 10 m, at y = -50 and y = -60, the profile rises by 1.5 m there, and lies 1.875 m below the dam."""
@@ -338,7 +350,7 @@ class Messages(Profile):
                    arguments=["profile", self.path("p.toml"), "-o", self.path("out"), "--trajectories", "5", "-q"])
         self.assertEqual({row["end"] for row in self.rows("stops.csv")}, {"limit"})
 
-    def test_the_file_of_a_profile_is_no_scenario(self):
+    def test_the_file_of_another_command_is_told_from_its_own(self):
         self.nodes((0, 200), (150, 87.5), (400, 15))
         self.scenario("x = 20", "[screens]\nx = [110]\n")
         self.scenario("x = 20", "", 'dem = "dem.tif"\nline = "line.gpkg"\n', name="cut.toml")
@@ -348,6 +360,20 @@ class Messages(Profile):
                 with self.subTest(command):
                     self.fails(2, name + words, "this is a file of talus profile", f"talus profile {self.path(name)} -o",
                                arguments=command)
+        self.write("run.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n')
+        self.write("campaign.toml", 'dem = "dem.tif"\nblocks = "blocks.csv"\nstops = "stops.csv"\n')
+        of_run = ("run.toml:2: [sources]", "this is a scenario of talus run", f"talus run {self.path('run.toml')} -o")
+        of_campaign = ("campaign.toml:3: stops = 'stops.csv'", "this is a campaign of talus calibrate",
+                       f"talus calibrate {self.path('campaign.toml')} -o")
+        for command, words in ((["profile", self.path("run.toml"), "-o", self.path("none")], of_run),
+                               (["calibrate", self.path("run.toml"), "-o", self.path("none")], of_run),
+                               (["diagnose", self.path("run.toml"), "-o", self.path("none")], of_run),
+                               (["profile", self.path("campaign.toml"), "-o", self.path("none")], of_campaign),
+                               (["run", self.path("campaign.toml"), "-o", self.path("none")], of_campaign),
+                               (["calibrate", self.path("p.toml"), "-o", self.path("none")],
+                                ("p.toml:1: profile = 'p.csv'", "must be a campaign of talus calibrate"))):
+            with self.subTest(command):
+                self.fails(2, *words, arguments=command)
 
     def test_the_default_ground_is_that_of_the_list_of_presets(self):
         self.nodes((0, 200), (150, 87.5), (400, 15))

@@ -14,7 +14,7 @@ import zlib
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import NORTH, TALUS, WEST, RunCase, box, write_features
+from support import NORTH, TALUS, WEST, RunCase, box, heights, write_dem, write_features
 
 HOSTILE = "<script>alert(1)</script>&amp;'\"\u202e</svg>"
 VALLEY = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../data/valley")
@@ -319,6 +319,30 @@ class Content(Report):
         self.assertEqual(len(found), len(bounds))
         for text, years in zip(found, bounds):
             self.assertAlmostEqual(float(re.sub(r"[ \xa0]", "", text)) / years, 1.0, 2)
+
+    def test_a_screen_with_a_vertex_far_off_the_map(self):  # a point every 4 pixels up to there: 4 GB
+        write_features(self.path("screens.gpkg"), "screens",
+                       [(f"LINESTRING ({WEST} 1200100,{WEST + 300} 1200100,900000000 1200100)", ["road"])], [("id", ogr.OFTString)])
+        self.run_scenario("out")
+        done = subprocess.run(["bash", "-c", 'ulimit -v 2000000; exec "$@"', "-", TALUS, "report", self.path("out"), "--overwrite", "-q"],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_objects_are_called_as_in_the_tables(self):
+        """The map had the numbers of the layer, and an object in a gap of the DEM was hit 0 times per year."""
+        z = heights()
+        z[28:32, 50:54] = -9999.0  # no height from x = 247.5 to 272.5 and y = 137.5 to 162.5
+        write_dem(self.path("dem.tif"), z, nodata=-9999.0)
+        write_features(self.path("houses.gpkg"), "houses", [(box(100, 100, 12, 9), ["EGID 7"]), (box(250, 140, 20, 20), ["EGID 8"])],
+                       [("id", ogr.OFTString)])
+        self.run_scenario("out")
+        self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "-q")
+        source = self.page().source
+        on_map = re.findall(r"<text[^>]*>(EGID \d|\d)</text>", source[:source.index("</defs>")])
+        self.assertEqual(sorted(name for name in on_map if name.startswith("EGID")), ["EGID 7", "EGID 8"])
+        first, second = re.findall(r"<tr><td>EGID.*", source)
+        self.assertEqual(first, "<tr><td>EGID 8</td><td colspan='5'>not assessed: the DEM has no height there</td></tr>")
+        self.assertTrue(second.startswith("<tr><td>EGID 7</td><td class='n'>"), second)
 
     def test_hostile_names_stay_text(self):
         road = f"road{HOSTILE}"

@@ -60,6 +60,9 @@ TEST_F(Screens,
       said(layer.warnings, "lines of screen road lie on each other for 5 m: crossings there count more than once"));
   EXPECT_TRUE(
       said(read({{"id", OFTString}}, {{"LINESTRING(1 1,1 7,5 7,1 7,1 3)", {"a"}}}).warnings, "for 8 m"));  // back
+  EXPECT_TRUE(said(  // one from south to north, where pieces far apart begin at the same x
+      read({{"id", OFTString}}, {{"LINESTRING(1 1,1 3,1 9)", {"a"}}, {"LINESTRING(1 14,1 4)", {"a"}}}).warnings,
+      "for 5 m"));
   EXPECT_FALSE(
       said(read({{"id", OFTString}}, {{"LINESTRING(1 1,9 1)", {"a"}}, {"LINESTRING(1 1,9 1)", {"b"}}}).warnings,
            "lie on each other"));

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <filesystem>
+#include <stdexcept>
 
 #include "talus/base/error.hpp"
 #include "talus/io/results/hazard_file.hpp"
@@ -32,9 +33,9 @@ std::uint32_t number_of(const std::string& text, const std::string& what) {
 /// Gives each crossing the events per year that its block stands for in the plan of the run, and the stratum of the
 /// block: a unit of work, as for `talus hazard --objects`.
 talus::WeightScale weigh(std::vector<talus::LineCrossing>& crossings, const CrossingTable& table,
-                         const talus::Scenario& scenario, const WeightingOptions& o) {
+                         const talus::Scenario& scenario) {
   const auto weights = talus::AnnualWeights::of(scenario);
-  if (!weights) throw talus::InputError(o.frequency + ": no blocks fall with these frequencies; give one above 0");
+  if (!weights) throw std::logic_error("a plan with frequencies has no weights");
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const std::uint32_t source = number_of(table.source[i], "source"), block = number_of(table.block[i], "block");
     if (source >= scenario.sources.size())
@@ -63,19 +64,19 @@ Weighting weigh_crossings(std::vector<talus::LineCrossing>& crossings, const Cro
     if (!o.frequency.empty()) throw talus::InputError("--unweighted: cannot be given with --frequency; leave out one");
     return {"alike, as --unweighted asks", {}};
   }
-  const fs::path file = fs::path(o.folder) / talus::io::kHazardFile;
-  if (!fs::exists(file)) {
+  const auto file = talus::io::hazard_file_of(o.folder);
+  if (!file) {
     if (o.frequency.empty()) return {"alike: the run has no annual frequencies", {}};
     throw talus::InputError("--frequency: the run in " + o.folder +
                             " has no annual frequencies that could be replaced; give the sources a field frequency, "
                             "or the scenario [frequency], and run again");
   }
   try {
-    const auto header = talus::io::read_hazard_header(file);
+    const auto header = talus::io::read_hazard_header(*file);
     auto loaded = talus::io::recorded_plan(o.folder, header.plan);
     talus::io::GivenFrequencies given;
     if (!o.frequency.empty()) given = talus::io::apply_weighting(o.frequency, loaded.scenario);
-    const auto scale = weigh(crossings, table, loaded.scenario, o);
+    const auto scale = weigh(crossings, table, loaded.scenario);
     return {"by the annual frequency " + (o.frequency.empty() ? "of its source" : "in " + o.frequency), scale, given};
   } catch (const talus::InputError& error) {
     throw talus::InputError(std::string(error.what()) + " (--unweighted counts every block alike)");

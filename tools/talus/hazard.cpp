@@ -38,9 +38,8 @@ struct Options {
 
 /// The hazard file, which a run writes if its sources have frequencies.
 fs::path tally_file(const fs::path& folder) {
-  const fs::path file = folder / talus::io::kHazardFile;
-  if (fs::exists(file)) return file;
   talus::io::require_results(folder);
+  if (const auto file = talus::io::hazard_file_of(folder)) return *file;
   throw talus::InputError(
       folder.string() +
       ": this run has no annual frequencies; give the sources a field frequency (events per year), or the scenario "
@@ -120,8 +119,7 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
   const talus::io::LoadedScenario loaded = recorded_plan(options, record);
   const talus::Scenario& scenario = loaded.scenario;
   auto weights = talus::AnnualWeights::of(scenario);
-  if (!weights)
-    throw talus::InputError(options.frequency + ": no blocks fall with these frequencies; give one above 0");
+  if (!weights) throw std::logic_error("a plan with frequencies has no weights");
   if (!options.quiet)
     say("", "repeats the run with another weighting: " + count_text(scenario.released()) +
                 " trajectories of the recorded plan, with the same bits");
@@ -214,14 +212,8 @@ int hazard(const Options& options) {
   for (const std::string& warning : warnings_of(record.header)) record.warnings.push_back(warning);
   if (const std::string warning = warning_of_objects(options, record.header); !warning.empty())
     record.warnings.push_back(warning);
-  for (std::string& warning : talus::io::size_warnings_of(folder)) record.warnings.push_back(std::move(warning));
-  for (std::string& warning : talus::io::cut_source_warnings_of(folder, !options.frequency.empty()))
-    record.warnings.push_back(std::move(warning));
-  if (auto note = talus::io::unusable_note(folder)) record.warnings.push_back(std::move(*note));
-  if (auto note = talus::io::coefficient_note(folder)) record.warnings.push_back(std::move(*note));
-  if (auto note = talus::io::barriers_note(folder)) record.warnings.push_back(std::move(*note));
-  if (auto note = talus::io::wet_day_note(folder, true)) record.warnings.push_back(std::move(*note));
-  if (auto note = talus::io::forest_note(folder)) record.warnings.push_back(std::move(*note));
+  for (std::string& note : talus::io::notes_of_run(folder, {record.frequency, true, false}))
+    record.warnings.push_back(std::move(note));
   if (record.width > 0.0 && talus::io::pieces_note(folder)) record.warnings.emplace_back(talus::io::kBoundsOfPieces);
 
   progress.stage("writing the maps");

@@ -161,6 +161,16 @@ void refuse_empty_items(const CLI::App& command) {
   }
 }
 
+/// A value of no characters, as of a variable of a script that is not set, is none for the parser: the default would be
+/// taken without a word.
+void refuse_empty_values(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_items_expected_max() == 0 || std::ranges::count(option->results(), "") == 0) continue;
+    throw talus::InputError(option->get_name() + ": has an empty value, must have one or be left out; see talus " +
+                            command.get_name() + " --help");
+  }
+}
+
 /// The action that prints the help of the program.
 Action help_of(const CLI::App& app) {
   return [text = app.help()] {
@@ -207,13 +217,14 @@ Action understood(int argc, char** argv, const std::vector<AddCommand>& commands
     throw talus::InputError(explain(app, error));
   }
   refuse_empty_items(*app.get_subcommands().front());
+  refuse_empty_values(*app.get_subcommands().front());
   return action;
 }
 
 int exit_code_of(const std::function<int()>& program) {
   try {
     const int code = program();
-    if (std::fflush(stdout) != 0) throw std::runtime_error("the output cannot be written");
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw std::runtime_error("the output cannot be written");
     return code;
   } catch (const talus::InputError& error) {
     say("error", error.what());

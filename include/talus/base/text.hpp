@@ -15,7 +15,11 @@ double number_in(std::string_view text);
 /// A number with at most `digits` significant digits, like "%.4g" of printf for 4: "0.1235", "12", "1.235e+06".
 std::string with_digits(double value, int digits);
 
-/// A share in percent with at most `digits` significant digits: "21.6 %" for 0.2158 and 3.
+/// A law says 1e-280 as easily as this, and no data can.
+inline constexpr double kSmallestShare = 1e-9;
+
+/// A share in percent with at most `digits` significant digits: "21.6 %" for 0.2158 and 3, "below 1e-07 %" for less
+/// than `kSmallestShare`.
 std::string percent(double share, int digits = 3);
 
 /// A number with `decimals` digits after the point, like "%.1f" of printf for 1: "12.0".

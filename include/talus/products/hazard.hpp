@@ -26,7 +26,7 @@ struct WeightSums {
 ///   high = min(the same, sum + w d(v / w^2), the same, total)
 ///
 /// Covers at least 95 % for trajectories stratified by source cell: shown by simulation in the tests, not proven.
-/// Source: Fay & Feuer, Statistics in Medicine 16 (1997), 791-801; docs/hazard.md, "Bounds".
+/// Source: Fay & Feuer, Statistics in Medicine 16 (1997), 791-801.
 Bounded annual_frequency(const WeightSums& counted, const WeightScale& scale);
 
 /// The 95 % gamma interval of Fay & Feuer for a weighted sum of Poisson counts, without the limits that

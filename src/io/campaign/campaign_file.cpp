@@ -7,6 +7,7 @@
 #include "deposit_tables.hpp"
 #include "io/files/checksum.hpp"
 #include "io/gdal/dataset.hpp"
+#include "io/scenario/file_kind.hpp"
 #include "io/scenario/ground_keys.hpp"
 #include "io/scenario/named_file.hpp"
 #include "io/scenario/surface_key.hpp"
@@ -40,6 +41,7 @@ class CampaignReader {
 
   CampaignSpec read(const std::optional<std::string>& surface) {
     const TomlValue root = read_toml(path_, path_);
+    refuse_other_kind(root, path_, FileKind::Campaign);
     TableReader top(&root, "", path_, faults_);
     spec_.name = top.text("name").value_or(base_.filename().string());
     spec_.crs = top.text("crs").value_or("");
@@ -134,7 +136,8 @@ void check_crs(const std::string& path, const std::string& given, const Terrain&
   if (given.empty()) return;
   GdalMessages messages;
   OGRSpatialReference system;
-  if (system.SetFromUserInput(given.c_str()) != OGRERR_NONE)
+  const char* const no_file[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
+  if (system.SetFromUserInput(given.c_str(), no_file) != OGRERR_NONE)
     throw InputError(path + ": crs = '" + given + "': is no coordinate system, must be one like \"EPSG:2056\"");
   if (!same_plane_system(wkt_of(&system), terrain.geo.crs_wkt))
     throw InputError(path + ": crs = '" + given + "': must be the system of the DEM, " + crs_name(terrain.geo.crs_wkt) +

@@ -13,7 +13,7 @@ namespace talus::io {
 struct DepositSpec {
   bool given = false;
   NamedFile table, sources, mapped;
-  Range release_height{1.0, 1.0};  ///< of sources without the field height [m]
+  Range release_height{1.0, 1.0};  ///< of sources without the field release_height [m]
   std::size_t strips = 0;          ///< across the slope; 0: none
   std::vector<double> held_out;    ///< numbers of the strips that never enter a fit, from 1
   std::vector<double> classes;     ///< limits between the classes of size [m]; empty: by the number of blocks

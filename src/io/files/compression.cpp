@@ -8,7 +8,7 @@
 namespace talus::io {
 namespace {
 
-constexpr int kTileLevel = 1;  // level 3 takes a quarter longer and gives 2 % less (docs/performance.md)
+constexpr int kTileLevel = 1;  // level 3 takes a quarter longer and gives 2 % less
 constexpr int kRepeatedLevel = 9;
 constexpr int kGzipLevel = 4;
 

@@ -22,6 +22,8 @@ namespace fs = std::filesystem;
 fs::path full_name(const fs::path& path) {
   if (path.empty())
     throw InputError("--out: the name of the folder is empty; give a new folder, for example -o result");
+  if (path.string().find("|layer") != std::string::npos)
+    throw InputError(path.string() + ": would be read as a layer of a file; give a folder without | in its name");
   std::error_code error;
   fs::path full = fs::weakly_canonical(fs::absolute(path), error);
   if (error) full = fs::absolute(path).lexically_normal();
@@ -70,6 +72,10 @@ void refuse_taken_name(const fs::path& folder, bool overwrite) {
   throw InputError(name +
                    ": --overwrite replaces only results of talus, and there is no run.json, part.json, "
                    "calibration.json or diagnosis.json in this folder; give a new name, or remove the folder yourself");
+}
+
+std::string not_readable_text(const fs::path& folder, const fs::filesystem_error& error) {
+  return folder.string() + ": cannot be looked at (" + error.code().message() + ")";
 }
 
 void make_hidden(StagedPath& staged) {
@@ -130,7 +136,7 @@ OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfi
     refuse_taken_name(final, overwrite);
     left = left_of(final);
   } catch (const fs::filesystem_error& error) {
-    throw InputError(final.string() + ": cannot be looked at (" + error.code().message() + "); give another folder");
+    throw InputError(not_readable_text(final, error) + "; give another folder");
   }
   if (unfinished == Unfinished::Ignore) std::erase_if(left, [](const Left& folder) { return folder.kept.has_value(); });
   const bool kept = !left.empty() && left.back().kept;
@@ -192,16 +198,24 @@ void OutputFolder::commit_work() {
 }
 
 void OutputFolder::commit(const fs::path& folder) {
-  try {
+  const std::string kept = "; the results are kept in " + temporary().string();
+  bool replace = false;
+  try {  // another process may have made the folder meanwhile, or the disk fails
     refuse_taken_name(final_path(), overwrite_);
-  } catch (const InputError& error) {  // another process has made the folder meanwhile
+    replace = overwrite_ && fs::exists(final_path()) && !fs::is_empty(final_path());
+    synchronise_all(folder);  // before the earlier result is moved aside
+  } catch (const InputError& error) {
     keep_results();
-    throw InputError(std::string(error.what()) + "; the results are kept in " + temporary().string());
+    throw InputError(error.what() + kept);
+  } catch (const fs::filesystem_error& error) {
+    keep_results();
+    throw InputError(not_readable_text(error.path1(), error) + kept);
+  } catch (const std::exception& error) {
+    keep_results();
+    throw std::runtime_error(error.what() + kept);
   }
-  synchronise_all(folder);  // before the earlier result is moved aside
   std::error_code error;
   const fs::path aside = temporary().string() + "-old";
-  const bool replace = overwrite_ && fs::exists(final_path()) && !fs::is_empty(final_path());
   if (replace) fs::rename(final_path(), aside, error);
   if (!error) {
     error = StagedPath::give_name(folder, final_path());  // fails if the folder has been made meanwhile

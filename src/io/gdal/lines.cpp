@@ -1,5 +1,6 @@
 #include "talus/io/gdal/lines.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <set>
@@ -184,17 +185,21 @@ double length_of_union(std::vector<Range> parts) {
   return length;
 }
 
-/// Length of a screen that lies on another part of it [m]. From west to east, so that only neighbours are compared.
+/// Length of a screen that lies on another part of it [m]. Along the longer side of the screen, so that only neighbours
+/// are compared.
 double doubled_length(const Screen& screen) {
   std::vector<LinePiece> pieces;
   append_pieces(0, screen.lines, pieces);
   std::erase_if(pieces, [](const LinePiece& piece) { return piece.from == piece.to; });
-  const auto west = [](const LinePiece& piece) { return std::min(piece.from.x(), piece.to.x()); };
-  std::ranges::sort(pieces, {}, west);
+  Eigen::AlignedBox2d box;
+  for (const LinePiece& piece : pieces) box.extend(piece.from).extend(piece.to);
+  const int axis = !box.isEmpty() && box.sizes().y() > box.sizes().x() ? 1 : 0;
+  const auto first = [&](const LinePiece& piece) { return std::min(piece.from[axis], piece.to[axis]); };
+  std::ranges::sort(pieces, {}, first);
   std::vector<std::vector<Range>> parts(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const double east = std::max(pieces[i].from.x(), pieces[i].to.x()) + kApart;
-    for (std::size_t k = i + 1; k < pieces.size() && west(pieces[k]) <= east; ++k)
+    const double last = std::max(pieces[i].from[axis], pieces[i].to[axis]) + kApart;
+    for (std::size_t k = i + 1; k < pieces.size() && first(pieces[k]) <= last; ++k)
       if (const Range part = overlap(pieces[k], pieces[i]); part.high > part.low) parts[k].push_back(part);
   }
   double length = 0.0;

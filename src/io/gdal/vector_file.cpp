@@ -109,13 +109,13 @@ std::uint64_t records_of(const std::string& dbf) {
 
 void check_shapefile(const std::string& path) {
   const auto dbf = part_of(path, ".dbf", ".DBF"), shx = part_of(path, ".shx", ".SHX");
-  const std::string stem = path.substr(0, path.size() - 4);
+  const std::string stem = path.substr(0, path.size() - 4), name = std::filesystem::path(stem).filename().string();
   if (!size_of(path)) return;  // GDAL says why
   if (!dbf)
-    throw InputError(path + ": the fields of its features are in " + std::filesystem::path(stem).filename().string() +
+    throw InputError(path + ": the fields of its features are in " + name +
                      ".dbf, which is not there: copy all parts of a Shapefile (.shp, .shx, .dbf, .prj); if it is to "
                      "have no fields, convert it: ogr2ogr " +
-                     shell_word(stem + ".gpkg") + " " + shell_word(path));
+                     shell_word((path.starts_with("/vsi") ? name : stem) + ".gpkg") + " " + shell_word(path));
   const auto index_size = shx ? size_of(*shx) : std::nullopt;
   if (!index_size || *index_size < 100) return;  // GDAL says why
   const std::uint64_t records = records_of(*dbf), shapes = (*index_size - 100) / 8;
@@ -123,6 +123,23 @@ void check_shapefile(const std::string& path) {
     throw InputError(path + ": has " + std::to_string(shapes) + " features, and its .dbf has the fields of " +
                      std::to_string(records) +
                      ", must be as many: copy all parts of the Shapefile (.shp, .shx, .dbf) again");
+}
+
+/// Checks the Shapefiles at the top of a zip archive, where GDAL looks for them.
+void check_zipped_shapefiles(const std::string& path) {
+  const std::string archive = "/vsizip/{" + path + "}";
+  const GdalMessages quiet;
+  const CPLStringList names(VSIReadDir(archive.c_str()));
+  for (int i = 0; i < names.size(); ++i)
+    if (ends_with(names[i], ".shp")) check_shapefile(archive + "/" + names[i]);
+}
+
+/// Throws InputError for a file that gives the columns of a table their types: by it 1.9 of an "Integer" is read as 1.
+void refuse_types_beside(const std::string& path) {
+  if (const auto types = part_of(path, ".csvt", ".CSVT"))
+    throw InputError(*types + ": sets the types of the columns of " + std::filesystem::path(path).filename().string() +
+                     ", by which values may change (1.9 of an Integer is 1), must not be there: remove it, talus " +
+                     "finds the types itself");
 }
 
 }  // namespace
@@ -140,8 +157,11 @@ void check_vector_file(const std::string& path) {
       if (entry.is_regular_file(none)) check_vector_file(entry.path().string());
   } else if (is_text_table(path)) {
     structure_of(without_prefix(path));
+    refuse_types_beside(path);
   } else if (ends_with(path, ".shp")) {
     check_shapefile(path);
+  } else if (ends_with(path, ".shz") || ends_with(path, ".shp.zip")) {
+    check_zipped_shapefiles(path);
   }
 }
 

@@ -7,8 +7,8 @@
 namespace talus::io {
 
 /// Refuses a vector file of which GDAL would lose rows or fields without a message: a CSV as `CsvStructure` says, a
-/// Shapefile without its .dbf or whose .dbf has another number of records; of a folder each of these in it. All else
-/// passes, also what is not there. Throws InputError.
+/// Shapefile (also zipped, .shz or .shp.zip) without its .dbf or whose .dbf has another number of records; of a folder
+/// each of these in it. All else passes, also what is not there. Throws InputError.
 void check_vector_file(const std::string& path);
 
 /// A cell of a CSV.

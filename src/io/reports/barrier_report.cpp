@@ -28,6 +28,11 @@ std::string between(const Interval& i, double factor) {
   return "[" + with_digits(factor * i.low, 3) + ", " + with_digits(factor * i.high, 3) + "]";
 }
 
+/// Bounds of a share in percent, as fine as percent() tells it.
+std::string between_percents(const Interval& i) {
+  return between({i.low < kSmallestShare ? 0.0 : i.low, std::max(i.high, kSmallestShare)}, 100.0);
+}
+
 std::vector<DesignRow> design_rows(const BarrierReport& r) {
   const BarrierDesign& d = r.design;
   const DesignFactors& f = r.factors;
@@ -72,7 +77,7 @@ std::string reliability_text(const Reliability& r) {
                      "\n";
   for (const Reliability::Limit& l : r.limits)
     text += "    " + cell(l.name, 6) + cell(with_digits(l.value, 4) + " " + r.unit, 14) + "exceeded by " +
-            cell(percent(l.exceeded.fitted) + " " + between(l.exceeded.fitted_bounds, 100.0), 28) + "of the law, " +
+            cell(percent(l.exceeded.fitted) + " " + between_percents(l.exceeded.fitted_bounds), 28) + "of the law, " +
             percent(l.exceeded.observed) + " " + between(l.exceeded.observed_bounds, 100.0) + " of the values\n" +
             (l.per_year ? "          by frequency: " + frequency_text(l) + "\n" : "");
   return text;

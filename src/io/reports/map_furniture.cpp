@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "svg.hpp"
 #include "talus/base/printable.hpp"
@@ -86,10 +87,11 @@ class Names {
     constexpr double kStep = 4.0;  // between points of a line that must not be covered [px]
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {
       const Eigen::Vector2d from(scale_.x(line[i].x()), scale_.y(line[i].y())),
-          to(scale_.x(line[i + 1].x()), scale_.y(line[i + 1].y()));
-      const double steps = std::ceil((to - from).norm() / kStep);
+          way = Eigen::Vector2d(scale_.x(line[i + 1].x()), scale_.y(line[i + 1].y())) - from;
+      const auto [first, last] = on_map(from, way);
+      const double steps = std::ceil((last - first) * way.norm() / kStep);
       for (double step = 0.0; step <= steps; ++step)
-        on_lines_.push_back(from + step / std::max(1.0, steps) * (to - from));
+        on_lines_.push_back(from + (first + step / std::max(1.0, steps) * (last - first)) * way);
     }
   }
 
@@ -104,6 +106,22 @@ class Names {
 
  private:
   static constexpr double kLine = 13.0;  // height of a name [px]
+
+  /// Shares of a way between which it is on the map: a vertex may lie far off. The first is larger if it never is.
+  std::pair<double, double> on_map(const Eigen::Vector2d& from, const Eigen::Vector2d& way) const {
+    double first = 0.0, last = 1.0;
+    const double side[] = {scale_.width, scale_.height};
+    for (int axis = 0; axis < 2; ++axis) {
+      if (way[axis] == 0.0) {
+        if (from[axis] < 0.0 || from[axis] > side[axis]) last = -1.0;
+        continue;
+      }
+      const auto [in, out] = std::minmax({-from[axis] / way[axis], (side[axis] - from[axis]) / way[axis]});
+      first = std::max(first, in);
+      last = std::min(last, out);
+    }
+    return {first, last};
+  }
 
   std::array<Box, 8> boxes_beside(const Box& of, const std::string& text) const {
     constexpr double kLetter = 6.8, kGap = 5.0;  // of bold letters, generous [px]

@@ -8,6 +8,7 @@
 
 #include "hazard_stream.hpp"
 #include "io/files/json.hpp"
+#include "io/files/own_files.hpp"
 #include "io/gdal/dataset.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
@@ -192,6 +193,15 @@ HazardHeader read_hazard(const std::filesystem::path& file, const std::function<
   }
   in.finish();
   return header;
+}
+
+std::optional<std::filesystem::path> hazard_file_of(const std::filesystem::path& folder) {
+  std::filesystem::path file = folder / kHazardFile;
+  if (std::filesystem::exists(file)) return file;
+  const std::vector<std::string> listed = files_of_record(folder / "run.json");
+  if (std::ranges::count(listed, kHazardFile) == 0) return {};
+  throw InputError(file.string() + ": is not there, though the run has annual frequencies: copy it again with the " +
+                   "other results, or run the scenario again");
 }
 
 }  // namespace talus::io

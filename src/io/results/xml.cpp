@@ -40,7 +40,7 @@ QgisDocument::QgisDocument()
 std::string QgisDocument::text() const {
   std::string text = xml_text(*tree_);
   for (std::size_t at = text.find(" />"); at != std::string::npos; at = text.find(" />", at)) text.erase(at, 1);
-  return text;  // with the bytes of earlier versions
+  return text;  // QGIS writes "/>" without a blank, too
 }
 
 std::string xml_text(const CPLXMLNode& tree) {

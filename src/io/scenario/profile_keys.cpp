@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "effect_keys.hpp"
+#include "file_kind.hpp"
 #include "ground_keys.hpp"
 #include "scenario_flags.hpp"
 #include "scenario_keys.hpp"
@@ -155,6 +156,7 @@ ScenarioSpec read_profile_spec(const RunFlags& flags, std::vector<std::string>& 
   spec.scenario = {std::filesystem::absolute(flags.scenario).lexically_normal().string(), flags.scenario};
   allow_folder_of(flags.scenario);
   const TomlValue root = read_toml(flags.scenario, flags.scenario);
+  refuse_other_kind(root, flags.scenario, FileKind::Profile);
   ProfileReader reader(spec, flags.scenario, faults);
   reader.read(TableReader(&root, "", flags.scenario, faults));
   flatten(spec.default_ground, flags.scenario + ": ground.zones.default", faults);

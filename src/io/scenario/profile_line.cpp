@@ -13,11 +13,29 @@ namespace {
 
 constexpr double kNoticedOff = 0.1;  // m by which the profile may miss the terrain without a word
 
-/// Shares of the way between two values of one coordinate at which it crosses whole numbers.
-void crossings(double from, double to, std::vector<double>& shares) {
+/// Shares of the way between two values of one coordinate at which it crosses whole numbers, of `least` to `most`: a
+/// vertex may lie far off the DEM.
+void crossings(double from, double to, double least, double most, std::vector<double>& shares) {
   if (from == to) return;
-  const double low = std::min(from, to), high = std::max(from, to);
-  for (double line = std::ceil(low); line <= high; line += 1.0) shares.push_back((line - from) / (to - from));
+  const double low = std::max(std::ceil(std::min(from, to)), least), high = std::min(std::max(from, to), most);
+  for (double line = low; line <= high; line += 1.0) shares.push_back((line - from) / (to - from));
+}
+
+/// Shares of the way from a to b at which it comes to another patch of the terrain, and the first off it.
+std::vector<double> shares_at_patches(const Surface& surface, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  const Grid& grid = surface.grid();
+  const double u_a = surface.u_of(a.x()), v_a = surface.v_of(a.y()), u_b = surface.u_of(b.x()),
+               v_b = surface.v_of(b.y());
+  const double columns = grid.columns, rows = grid.rows;
+  std::vector<double> shares{0.0, 1.0};
+  crossings(u_a, u_b, -1.0, columns, shares);
+  crossings(v_a, v_b, -1.0, rows, shares);
+  if (surface.creased()) {
+    crossings(v_a - u_a, v_b - u_b, -columns, rows, shares);
+    crossings(v_a + u_a, v_b + u_b, -2.0, columns + rows, shares);
+  }
+  std::sort(shares.begin(), shares.end());
+  return shares;
 }
 
 }  // namespace
@@ -41,17 +59,7 @@ ProfileLine profile_along(const std::vector<Eigen::Vector2d>& plan, const Surfac
   for (std::size_t i = 1; i < plan.size(); ++i) {
     const Eigen::Vector2d &a = plan[i - 1], &b = plan[i];
     const double length = (b - a).norm();
-    std::vector<double> shares{0.0, 1.0};
-    crossings(surface.u_of(a.x()), surface.u_of(b.x()), shares);
-    crossings(surface.v_of(a.y()), surface.v_of(b.y()), shares);
-    if (surface.creased()) {
-      const double u_a = surface.u_of(a.x()), v_a = surface.v_of(a.y()), u_b = surface.u_of(b.x()),
-                   v_b = surface.v_of(b.y());
-      crossings(v_a - u_a, v_b - u_b, shares);
-      crossings(v_a + u_a, v_b + u_b, shares);
-    }
-    std::sort(shares.begin(), shares.end());
-    for (const double share : shares)
+    for (const double share : shares_at_patches(surface, a, b))
       add(a + share * (b - a), before + share * length, i + 1 == plan.size() && share == 1.0);
     before += length;
   }

@@ -7,6 +7,7 @@
 
 #include "barrier_keys.hpp"
 #include "effect_keys.hpp"
+#include "file_kind.hpp"
 #include "frequency_keys.hpp"
 #include "ground_keys.hpp"
 #include "io/gdal/input_name.hpp"
@@ -14,7 +15,6 @@
 #include "scenario_flags.hpp"
 #include "surface_key.hpp"
 #include "talus/base/error.hpp"
-#include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/input_access.hpp"
 
@@ -348,15 +348,6 @@ static void keep_vrt_folders(ScenarioSpec& spec, std::vector<std::string>& fault
   }
 }
 
-/// Throws InputError if a file is one of `talus profile`: each of its keys would be a fault otherwise.
-static void refuse_profile(const TomlValue& root, const std::string& file) {
-  for (const char* const key : {"profile", "line"})
-    if (const TomlValue* const value = root.find(key); value != nullptr && value->kind == Kind::Text)
-      throw InputError(file + ":" + std::to_string(value->line) + ": " + key + " = " + value->shown() +
-                       ": this is a file of talus profile, must be a scenario of talus run: talus profile " +
-                       shell_word(file) + " -o FOLDER simulates it");
-}
-
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) {
   ScenarioSpec spec;
   start_with_preset(spec, flags, faults);
@@ -365,7 +356,7 @@ ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) 
     spec.scenario = {std::filesystem::absolute(flags.scenario).lexically_normal().string(), flags.scenario};
     allow_folder_of(flags.scenario);
     const TomlValue root = read_toml(flags.scenario, flags.scenario);
-    refuse_profile(root, flags.scenario);
+    refuse_other_kind(root, flags.scenario, FileKind::Scenario);
     SpecReader(spec, flags.scenario, flags.scenario, "scenario", faults).read(root);
   }
   lay_flags(spec, flags, faults);

@@ -115,14 +115,18 @@ void check_depth(std::string_view text, const std::string& name) {
   }
 }
 
-void check_keys(const TomlValue& value, const std::string& name) {
+/// Throws InputError for keys that are too long and texts that no file name and no message can hold.
+void check_texts(const TomlValue& value, const std::string& name) {
+  if (value.text.find('\0') != std::string::npos)
+    throw InputError(name + ":" + std::to_string(value.line) + ": a text has the character of number 0 (\\u0000) in " +
+                     "it, must have none");
   for (const auto& [key, member] : value.members) {
     if (key.size() > kLongestKey)
       throw InputError(name + ":" + std::to_string(member.line) + ": key '" + shortened(key, 40) + "' has " +
                        std::to_string(key.size()) + " letters, must have at most " + std::to_string(kLongestKey));
-    check_keys(member, name);
+    check_texts(member, name);
   }
-  for (const TomlValue& item : value.items) check_keys(item, name);
+  for (const TomlValue& item : value.items) check_texts(item, name);
 }
 
 }  // namespace
@@ -165,7 +169,7 @@ TomlValue read_toml(const std::string& path, const std::string& name) {
   check_depth(text, name);
   try {
     TomlValue tree = converted(toml::parse(text));
-    check_keys(tree, name);
+    check_texts(tree, name);
     return tree;
   } catch (const toml::parse_error& error) {
     std::string what(error.description());

@@ -71,6 +71,8 @@ TEST(Percent, HasSignificantDigits) {
   EXPECT_EQ(percent(0.2158), "21.6 %");
   EXPECT_EQ(percent(0.2158, 2), "22 %");
   EXPECT_EQ(percent(0.000123), "0.0123 %");
+  EXPECT_EQ(percent(4e-286), "below 1e-07 %");
+  EXPECT_EQ(percent(0.0), "0 %");
 }
 
 TEST(Padded, IsNeverCut) {

@@ -58,7 +58,7 @@ class Transformer {
   /// Throws InputError "`where`: the place ..." where it cannot be transformed.
   void apply(double& x, double& y, const std::string& where);
 
-  /// Every operation that was used so far, with its accuracy. Empty for the identity.
+  /// The operations that were used so far, looked up at one place in 256, with their accuracy. Empty for the identity.
   const std::vector<Reprojection>& used() const;
 
   /// One line for every operation whose accuracy is unknown or worse than half a cell, and one if two local grids with

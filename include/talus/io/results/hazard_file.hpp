@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/simulate/tally/tally.hpp"
@@ -49,6 +50,10 @@ void write_hazard(const std::filesystem::path& file, const LoadedScenario& loade
 /// version, or its bytes have changed. The checksum over all bytes is compared after the last row.
 HazardHeader read_hazard(const std::filesystem::path& file, const std::function<void(const HazardHeader&)>& begin,
                          const std::function<void(const HazardRow&)>& visit);
+
+/// The hazard file of a run; nothing if its sources have no frequencies. Throws InputError if it is lost: the record of
+/// the run lists it.
+std::optional<std::filesystem::path> hazard_file_of(const std::filesystem::path& folder);
 
 /// The header alone; reads the whole file, to compare its checksum. Throws as `read_hazard`.
 inline HazardHeader read_hazard_header(const std::filesystem::path& file) {
