@@ -34,10 +34,10 @@ std::string name_of(const Part& part) {
   return std::to_string(part.number) + "/" + std::to_string(part.of);
 }
 
-/// "3 rounds (--above 0.01)".
+/// "3 rounds (--above 0.01)"; of one round only that.
 std::string asked_text(const Rounds& asked) {
-  return std::to_string(asked.at_most()) + (asked.at_most() == 1 ? " round" : " rounds") + " (--above " +
-         text_of(asked.above) + ")";
+  if (!asked.several()) return "1 round";
+  return std::to_string(asked.at_most()) + " rounds (--above " + text_of(asked.above) + ")";
 }
 
 /// The parts in their order. Throws InputError unless every part of one division is there once, with equal rounds.

@@ -131,7 +131,7 @@ class Again(RunCase):
         start = ["run", self.path("s.toml"), "-o", self.path("x")]
         for option in ("--until-error", "--checkpoint", "--above"):
             self.fails(2, option, "nan", "not in range", arguments=[*start, option, "nan"])
-        self.fails(2, "--part", "must be I/N", arguments=[*start, "--part", ""])
+        self.fails(2, "--part", "must be I/N", arguments=[*start, "--part", "1"])
         self.fails(2, "--memory", "1100M at least", arguments=[*start, "--memory", "500M", "--threads", "32"])
         self.assertFalse(os.path.exists(self.path("x")))
 

@@ -46,8 +46,8 @@ class Layers(Case):
             self.fails(2, f"'|layerid={number}' is not read", "must be a whole number from 0", "|layername=houses",
                        arguments=[*check, site + "|layerid=" + number])
         self.fails(2, "has a layer already", arguments=[*check, site + "|layername=cliffs", "--sources-layer", "houses"])
-        self.fails(2, "flag --sources-layer = '': must name a layer", arguments=[*check, site, "--sources-layer", ""])
-        self.fails(2, "flag --parameters", "must name a file", arguments=[*check, site + "|layername=cliffs", "--parameters", ""])
+        self.fails(2, "--sources-layer: has an empty value", arguments=[*check, site, "--sources-layer", ""])
+        self.fails(2, "--parameters: has an empty value", arguments=[*check, site + "|layername=cliffs", "--parameters", ""])
         self.fails(2, "must come with --zones", arguments=[*check, site + "|layername=cliffs", "--zone-field", "kind"])
         self.fails(2, "flag --frequency = 0: must be above 0", arguments=[*check, site + "|layername=cliffs", "--frequency", "0"])
         self.run_well("sources", "--dem", self.path("dem.tif"), "-o", self.path("s.gpkg"), "--slope", "10")

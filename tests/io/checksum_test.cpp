@@ -77,6 +77,7 @@ TEST_F(Sha256Files, ARasterIsAlsoWhatIsSaidBesideIt) {
            {"<NoDataValue>0</NoDataValue>", ""},
            {"<UnitType>ft</UnitType>", ""},
            {"<ColorInterp>Alpha</ColorInterp>", ""},
+           {"", "<PAMRasterBand band=\"2\"><ColorInterp>Gray</ColorInterp></PAMRasterBand>"},  // it was alpha
            {"", "<SRS>EPSG:2056</SRS>"},
            {"", "<GeoTransform>0, 5, 0, 0, 0, -5</GeoTransform>"},
            {"", "<Metadata><MDI key=\"NODATA_VALUES\">0</MDI></Metadata>"},

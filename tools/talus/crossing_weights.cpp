@@ -64,14 +64,13 @@ Weighting weigh_crossings(std::vector<talus::LineCrossing>& crossings, const Cro
     if (!o.frequency.empty()) throw talus::InputError("--unweighted: cannot be given with --frequency; leave out one");
     return {"alike, as --unweighted asks", {}};
   }
-  const auto file = talus::io::hazard_file_of(o.folder);
-  if (!file) {
-    if (o.frequency.empty()) return {"alike: the run has no annual frequencies", {}};
-    throw talus::InputError("--frequency: the run in " + o.folder +
-                            " has no annual frequencies that could be replaced; give the sources a field frequency, "
-                            "or the scenario [frequency], and run again");
-  }
   try {
+    const auto file = talus::io::hazard_file_of(o.folder);
+    if (!file && o.frequency.empty()) return {"alike: the run has no annual frequencies", {}};
+    if (!file)
+      throw talus::InputError("--frequency: the run in " + o.folder +
+                              " has no annual frequencies that could be replaced; give the sources a field frequency, "
+                              "or the scenario [frequency], and run again");
     const auto header = talus::io::read_hazard_header(*file);
     auto loaded = talus::io::recorded_plan(o.folder, header.plan);
     talus::io::GivenFrequencies given;

@@ -50,9 +50,9 @@ bool is_there(const std::string& file) {
   return VSIStatExL(name_for_gdal(file).c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0;
 }
 
-/// Statistics and overviews, which programs that show a raster write beside it.
+/// Overviews and statistics, which programs that show a raster write beside it.
 bool is_for_display(std::string_view file) {
-  constexpr std::array<std::string_view, 5> kEnds{".aux", ".ovr", ".rrd", ".stx", "/sta.adf"};
+  constexpr std::array<std::string_view, 4> kEnds{".ovr", ".rrd", ".stx", "/sta.adf"};
   return std::ranges::any_of(kEnds, [&](std::string_view end) { return file.ends_with(end); });
 }
 

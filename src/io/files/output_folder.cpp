@@ -200,30 +200,33 @@ void OutputFolder::commit_work() {
 void OutputFolder::commit(const fs::path& folder) {
   const std::string kept = "; the results are kept in " + temporary().string();
   bool replace = false;
-  try {  // another process may have made the folder meanwhile, or the disk fails
+  try {  // another process may have made the folder meanwhile
     refuse_taken_name(final_path(), overwrite_);
     replace = overwrite_ && fs::exists(final_path()) && !fs::is_empty(final_path());
-    synchronise_all(folder);  // before the earlier result is moved aside
   } catch (const InputError& error) {
     keep_results();
     throw InputError(error.what() + kept);
   } catch (const fs::filesystem_error& error) {
     keep_results();
     throw InputError(not_readable_text(error.path1(), error) + kept);
-  } catch (const std::exception& error) {
-    keep_results();
-    throw std::runtime_error(error.what() + kept);
   }
   std::error_code error;
   const fs::path aside = temporary().string() + "-old";
-  if (replace) fs::rename(final_path(), aside, error);
-  if (!error) {
-    error = StagedPath::give_name(folder, final_path());  // fails if the folder has been made meanwhile
+  const auto keep_both = [&] {  // the earlier result and this one
     std::error_code ignored;
-    if (error && replace) fs::rename(aside, final_path(), ignored);
+    if (replace && fs::exists(aside, ignored)) fs::rename(aside, final_path(), ignored);
+    keep_results();
+  };
+  try {
+    synchronise_all(folder);  // before the earlier result is moved aside
+    if (replace) fs::rename(final_path(), aside, error);
+    if (!error) error = StagedPath::give_name(folder, final_path());  // fails if it has been made meanwhile
+  } catch (const std::exception& fault) {                             // of the disk
+    keep_both();
+    throw std::runtime_error(fault.what() + kept);
   }
   if (error) {
-    keep_results();
+    keep_both();
     throw std::runtime_error(final_path().string() + ": the results cannot be given this name (" + error.message() +
                              "); they are kept in " + temporary().string());
   }

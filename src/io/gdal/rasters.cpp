@@ -153,13 +153,14 @@ Terrain read_terrain(const std::string& path, const RasterMemory& memory, int th
   check_cell(path, grid.cell_y);
   GDALRasterBand& band = *dataset->GetRasterBand(1);
   check_band(band, path, terrain.warnings);
-  const bool alpha =
-      dataset->GetRasterCount() > 1 && dataset->GetRasterBand(2)->GetColorInterpretation() == GCI_AlphaBand;
+  bool alpha = false;
+  for (int i = 2; i <= dataset->GetRasterCount(); ++i)
+    alpha = alpha || dataset->GetRasterBand(i)->GetColorInterpretation() == GCI_AlphaBand;
   if (alpha && band.GetMaskFlags() == GMF_ALL_VALID)
     throw InputError(path +
                      ": has a band of transparency (alpha), which says nothing beside heights of this type, must " +
                      "say where there are none by a nodata value: gdalwarp -dstnodata -9999 in place of -dstalpha");
-  if (dataset->GetRasterCount() > 1 && !alpha)
+  if (dataset->GetRasterCount() > (alpha ? 2 : 1))
     terrain.warnings.push_back(path + ": has " + std::to_string(dataset->GetRasterCount()) +
                                " bands: the first is taken as heights");
   terrain.heights.grid = grid;

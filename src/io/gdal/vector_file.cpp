@@ -136,8 +136,9 @@ void check_zipped_shapefiles(const std::string& path) {
 
 /// Throws InputError for a file that gives the columns of a table their types: by it 1.9 of an "Integer" is read as 1.
 void refuse_types_beside(const std::string& path) {
-  if (const auto types = part_of(path, ".csvt", ".CSVT"))
-    throw InputError(*types + ": sets the types of the columns of " + std::filesystem::path(path).filename().string() +
+  const std::string types = path.substr(0, path.rfind('.')) + ".csvt";
+  if (size_of(types))
+    throw InputError(types + ": sets the types of the columns of " + std::filesystem::path(path).filename().string() +
                      ", by which values may change (1.9 of an Integer is 1), must not be there: remove it, talus " +
                      "finds the types itself");
 }

@@ -89,6 +89,7 @@ class Names {
       const Eigen::Vector2d from(scale_.x(line[i].x()), scale_.y(line[i].y())),
           way = Eigen::Vector2d(scale_.x(line[i + 1].x()), scale_.y(line[i + 1].y())) - from;
       const auto [first, last] = on_map(from, way);
+      if (first > last) continue;
       const double steps = std::ceil((last - first) * way.norm() / kStep);
       for (double step = 0.0; step <= steps; ++step)
         on_lines_.push_back(from + (first + step / std::max(1.0, steps) * (last - first)) * way);

@@ -208,7 +208,8 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
       throw InputError(layer.label(*feature) + ": " + (parts.empty() ? "has no geometry" : "is a point") +
                        ", must be a polygon or a line that blocks may hit");
     const OGREnvelope box = parts.envelope();
-    state_->names.push_back(object_name(layer, *feature, {layer.field("name"), layer.field("id")}));
+    state_->names.push_back(
+        object_name(layer, *feature, {layer.field("name"), layer.field("id"), layer.field("object")}));
     off_map.push_back(wholly_off(box, grid));
     all.Merge(box);
     std::optional<double> width;

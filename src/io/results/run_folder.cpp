@@ -180,13 +180,13 @@ std::optional<std::string> left_note(const RunSummary& run, std::size_t crossed)
   if (!run.pieces) lost = std::min(lost, run.released - static_cast<double>(crossed));
   if (!(lost > kWarnedLeftShare * run.released)) return std::nullopt;
   const bool gaps = run.left_into_gaps > 0.0;
-  return percent(lost / run.released) + " of the blocks (" + with_decimals(lost, 0) + " of " +
+  return "up to " + percent(lost / run.released) + " of the blocks (" + with_decimals(lost, 0) + " of " +
          with_decimals(run.released, 0) + ") left the " +
          (run.of_profile ? "profile"
           : gaps         ? "DEM or entered a gap in it"
                          : "DEM") +
-         " and may not have crossed this line before: those that would have crossed it later are missing here "
-         "(unsafe); take a " +
+         " without crossing this line first: those that would have crossed it later are missing here (unsafe); take "
+         "a " +
          (run.of_profile ? "longer profile"
           : gaps         ? "larger DEM, or fill the gaps"
                          : "larger DEM");

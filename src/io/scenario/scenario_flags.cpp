@@ -72,10 +72,6 @@ void lay_fields(ScenarioSpec& spec, const std::vector<std::string>& flags, std::
 
 /// --sources-layer NAME: the layer of the file of sources, also of one that the scenario names.
 void lay_sources_layer(ScenarioSpec& spec, const std::string& layer, std::vector<std::string>& faults) {
-  if (layer.empty()) {
-    faults.emplace_back("flag --sources-layer = '': must name a layer");
-    return;
-  }
   if (spec.sources.path.empty()) {
     faults.push_back("flag --sources-layer = '" + layer +
                      "': must come with --sources, or a scenario that has sources");
@@ -128,8 +124,7 @@ void start_with_model(ScenarioSpec& spec, const RunFlags& flags, std::vector<std
   if (!flags.scenario.empty())
     faults.push_back(flag + ": a scenario names its model itself: include = \"FILE\" at its top");
   if (flags.preset) faults.push_back(flag + ": must not come with --preset; leave out one of the two");
-  if (flags.parameters->empty()) faults.push_back(flag + ": must name a file");
-  if (!flags.scenario.empty() || flags.preset || flags.parameters->empty()) return;
+  if (!flags.scenario.empty() || flags.preset) return;
   spec.include = {absolute_path(*flags.parameters, std::filesystem::current_path()), flag};
   std::error_code none;
   if (!std::filesystem::exists(spec.include.path, none)) return;  // reported later, with the other files

@@ -8,7 +8,7 @@ MODEL.toml is the fitted ground (`talus calibrate`). Printed: the tests on what 
 2000 data sets drawn from the model, also with a scatter 1.6 times the model's and with two sites that differ; with --truth the
 power at 24, 48 and 89 blocks (those of the campaign, again and again) against data of that model; with --refit the size with
 and without a fit of the ground (theta_scale, Et50 of each zone) to each data set. families_study.cc does the work with the
-library of the build. Seconds, with --refit minutes. Results: docs/diagnosis-method.md, "Families".
+library of the build. Seconds, with --refit minutes. Results: docs/diagnosis-method.md, "The families".
 """
 import argparse
 import subprocess

@@ -15,7 +15,7 @@ struct FamilyPart {
 };
 
 /// Effects that leave the same kind of trace, tested together by one test of few degrees of freedom.
-/// docs/diagnosis-method.md, "Families".
+/// docs/diagnosis-method.md, "The families".
 struct FamilyTest {
   std::string name;                  ///< "block property", "place", "day", "instrument", "dispersion"
   std::vector<std::string> members;  ///< effects that may be named if the family is significant
