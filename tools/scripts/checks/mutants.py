@@ -46,7 +46,7 @@ MUTANTS = [
     # the tallies
     ("src/simulate/tally/cell_record.cpp", "maximum[q] = std::max(maximum[q], sums.largest);", "maximum[q] = sums.largest;", "*Tally*:*Cell*"),
     ("src/simulate/tally/cell_record.cpp", "  add_checked(exits, other.exits);\n", "", "*Tally*:*Cell*:*Merge*"),
-    ("src/simulate/tally/cell_record.cpp", "static_cast<double>(value) * units + 0.5", "static_cast<double>(value) * units", "*Tally*:*Cell*:*Mean*"),
+    ("include/talus/simulate/tally/checked_sum.hpp", "value * units + 0.5", "value * units", "*Tally*:*Cell*:*Mean*"),
     ("src/simulate/tally/tally.cpp", "values[i] > limit ? 1U : 0U", "values[i] >= limit ? 1U : 0U", "*Tally*:*Exceed*:*Thresh*"),
     ("src/simulate/tally/tally.cpp", "row % kRegionSide * kRegionSide + column % kRegionSide", "column % kRegionSide * kRegionSide + row % kRegionSide", "*Tally*:*Region*"),
     ("src/simulate/tally/histogram.cpp", "std::ceil(share * count)", "std::floor(share * count)", "*Histogram*:*Percentile*"),
