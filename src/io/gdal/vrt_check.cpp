@@ -46,9 +46,9 @@ std::string key_of_entry(const CPLXMLNode& node) {
 bool names_source(const CPLXMLNode& node) {
   const std::string name = lowercase(node.pszValue), key = key_of_entry(node);
   constexpr std::array<std::string_view, 3> kOthers{"sourcedataset", "srcdatasource", "dempath"};
-  constexpr std::array<std::string_view, 3> kKeys{"x_dataset", "y_dataset", kOverviews};  // arrays of a warped VRT
+  constexpr std::array<std::string_view, 3> kEntries{"x_dataset", "y_dataset", kOverviews};  // arrays of a warped VRT
   return name.ends_with("filename") || std::ranges::count(kOthers, std::string_view(name)) > 0 ||
-         std::ranges::count(kKeys, std::string_view(key)) > 0;
+         std::ranges::count(kEntries, std::string_view(key)) > 0;
 }
 
 /// The elements and attributes of a text in XML; none if GDAL cannot read it.
