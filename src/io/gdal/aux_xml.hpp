@@ -3,9 +3,9 @@
 
 namespace talus::io {
 
-/// What the text of NAME.aux.xml says that changes the raster NAME: scale, offset, nodata, unit, place, system and the
-/// like. Without what programs write that only show a raster (statistics, histograms, colours, other metadata). Empty
-/// if nothing is left, or if GDAL cannot read the text.
+/// The entries of a text NAME.aux.xml that change the raster NAME: scale, offset, nodata, unit, place, system, which
+/// band is alpha. Statistics, histograms and other metadata, which viewers write, are left out. Empty if nothing
+/// remains, or if GDAL cannot read the text.
 std::string aux_that_counts(const std::string& text);
 
 }  // namespace talus::io

@@ -53,7 +53,7 @@ std::vector<std::string> files_of_raster(const std::string& path);
 /// A dataset in memory, of zeros. Throws std::runtime_error if there is no memory for it.
 Dataset memory_dataset(int columns, int rows, GDALDataType type);
 
-/// The same over bytes of the caller, which must outlive it: rows x columns.
+/// A dataset in memory over the bytes of the caller (rows x columns), which must outlive it. Throws as the other one.
 Dataset memory_dataset(int columns, int rows, std::uint8_t* bytes);
 
 /// Coordinates on a map of the earth are below this [m]; with the number of a zone before them they have up to 8

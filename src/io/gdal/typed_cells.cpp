@@ -17,7 +17,7 @@ bool is_spelt_as_number(const std::string& text, double number) {
   return text[first] != '0' || text.size() == first + 1 || text[first + 1] == '.';
 }
 
-/// What the cells of a column hold, as `with_numbers` says.
+/// The type of a column by its cells. The rule is that of `with_numbers`.
 OGRFieldType type_of_cells(const std::vector<Feature>& features, int field) {
   const char* const column = features.front()->GetFieldDefnRef(field)->GetNameRef();
   const bool is_name = EQUAL(column, "name") || EQUAL(column, "id");

@@ -9,14 +9,14 @@
 
 namespace talus::io {
 
-/// What is made of the results of a run.
+/// How a command uses the results of a run.
 struct ResultsUse {
   const GivenFrequencies& frequency;  ///< another weighting than the run's; without a file: the run's own
   bool per_year;                      ///< there are figures per year
   bool of_line;                       ///< of the crossings of one screen; else maps
 };
 
-/// What a run says to everyone who uses its results, from its run.json:
+/// Notes for everyone who uses the results of a run, from its run.json:
 ///   that the sizes of blocks or the ground are no fitted ones, that sources release nothing or overlap;
 ///   that its status is not complete; `coefficient_note`;
 ///   that the figures hold only with the barriers and the forest of the run, and on a wet day.

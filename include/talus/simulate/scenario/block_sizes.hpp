@@ -21,7 +21,7 @@ std::string size_warning(const Scenario& scenario, std::span<const Preset* const
 /// One line if presets of the ground were fitted to no data. Empty if there is none.
 std::string guess_warning(std::span<const Preset* const> presets);
 
-/// What `rare_class_warning` says.
+/// Words by which a text of `rare_class_warning` is known.
 inline constexpr std::string_view kRareClasses = "few paths stand for all events of a class: ";
 
 /// One line if classes of blocks with a frequency are drawn so seldom that few paths stand for all their events. Empty
