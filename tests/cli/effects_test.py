@@ -98,7 +98,8 @@ class Effects(Case):
                                  ("day = 5\n" + HEAD + wet, [], ""), (HEAD + shape, [], ""),
                                  (spheres + shape, ["block-shape] acts on blocks that are no spheres", "axes = [1, 1, 1]"],
                                   "does nothing here"),
-                                 (HEAD.replace("1.2", "1.5") + shape, ["axes = [1.5, 1.5, 1]"], "does nothing here")):
+                                 (HEAD.replace("1.2", "1.5") + shape, ["axes = [1.5, 1.5, 1]"], "does nothing here"),
+                                 ("day = 5\n" + HEAD, ["day = 5 changes nothing: no effect that depends on the day is on"], "")):
             with self.subTest(text):
                 self.write("s.toml", text)
                 plan = self.run_well("check", self.path("s.toml")).stdout
@@ -273,6 +274,7 @@ class Effects(Case):
                 '[effects.block-mass]\npreset = "mesured"\n': ["unknown preset 'mesured' of block-mass", "'measured'"],
                 "[effects.block-mass]\nreference_diameter = 2\n": ["must give roughness or stiffness, or preset"],
                 '[effects.air-drag]\ncoefficient = 1\nzones = ["default"]\n': ["unknown key 'zones'"],
+                "[screens]\n": ["[screens] names no file, must have file"],
         }.items():
             with self.subTest(text):
                 self.write("s.toml", HEAD + text)

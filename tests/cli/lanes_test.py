@@ -1,22 +1,23 @@
 """Trajectories in the lanes of one instruction: the same bytes for any number of lanes."""
 import json
 import re
+import subprocess
 
 from results_test import digests
-from support import Case
+from support import OPEN_RUN, TALUS, Case, RunCase
+
+
+def lanes_of_machine():
+    with open("/proc/cpuinfo", encoding="utf-8") as cpuinfo:
+        found = re.search(r"^flags\s*:(.*)$", cpuinfo.read(), re.M)
+    flags = set(found.group(1).split()) if found else set()
+    if {"avx512f", "avx512dq", "avx512vl"} <= flags:
+        return 8
+    return 4 if "avx2" in flags else 1
 
 
 class Lanes(Case):
-    def setUp(self):
-        super().setUp()
-        self.most = self.lanes_of_machine()
-
-    def lanes_of_machine(self):
-        found = re.search(r"^flags\s*:(.*)$", self.read_text("/proc/cpuinfo"), re.M)
-        flags = set(found.group(1).split()) if found else set()
-        if {"avx512f", "avx512dq", "avx512vl"} <= flags:
-            return 8
-        return 4 if "avx2" in flags else 1
+    most = lanes_of_machine()
 
     def there(self):
         lanes = [n for n in (1, 4, 8) if n <= self.most]
@@ -58,3 +59,41 @@ class Lanes(Case):
         run = next(command for command in program["commands"] if command["name"] == "run")
         lanes = next(p for p in run["parameters"] if p["name"] == "lanes")
         self.assertEqual((lanes["type"], lanes["choices"]), ("choice", ["1", "4", "8"]))
+
+
+class EveryKindOfRun(RunCase):
+    """Frequencies, screens, paths and bounds: one lane against as many as there are, however the run is made."""
+    lanes = lanes_of_machine()
+
+    def setUp(self):
+        super().setUp()
+        self.write("s.toml", OPEN_RUN)
+
+    def in_lanes(self, out, *more):
+        """A run in lanes that has the bytes of the run `one`."""
+        self.run_scenario(out, *more)
+        self.assertEqual(self.record(out)["lanes"], self.lanes)
+        self.assert_same("one", out)
+
+    def test_threads_memory_and_layers(self):
+        self.run_scenario("one", "--lanes", "1", "--threads", "1")
+        self.assertEqual(self.record("one")["lanes"], 1)
+        self.in_lanes("threads", "--threads", "2")
+        self.in_lanes("memory", "--memory", "200M")
+        self.run_scenario("one", "--lanes", "1", "--vectors", "fgb", "--overwrite")
+        self.in_lanes("layers", "--vectors", "fgb")
+
+    def test_rounds(self):
+        self.run_scenario("one", "--lanes", "1", "--rounds", "2")
+        self.in_lanes("rounds", "--rounds", "2")
+
+    def test_killed_and_resumed(self):
+        many = ("--trajectories", "2000")
+        self.run_scenario("one", "--lanes", "1", *many)
+        process = subprocess.Popen([TALUS, "run", self.path("s.toml"), "-o", self.path("out"), "--threads", "1", "--checkpoint", "0",
+                                    "--progress=machine", *many], stderr=subprocess.PIPE, text=True)
+        self.wait_for_progress(process, 20)
+        process.kill()
+        process.communicate()
+        self.assertEqual(len(self.unfinished("out")), 1)
+        self.in_lanes("out", "--resume", *many)

@@ -152,6 +152,20 @@ class Layers(Case):
                        arguments=["run", *self.flags, "--sources", source, "-o", self.path("no")])
             os.remove(source)
 
+    def test_yes_and_no_are_no_numbers(self):  # a diameter of "yes" was 1 m
+        file = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("yes.gpkg"))
+        layer = file.CreateLayer("yes", system(2056), ogr.wkbPolygon)
+        field = ogr.FieldDefn("diameter", ogr.OFTInteger)
+        field.SetSubType(ogr.OFSTBoolean)
+        layer.CreateField(field)
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature.SetField(0, 1)
+        feature.SetGeometry(ogr.CreateGeometryFromWkt(box(100, 230, 10, 10)))
+        layer.CreateFeature(feature)
+        file = layer = None
+        self.fails(2, "feature 1: field diameter = yes is of the type Boolean, must be a number field in m",
+                   arguments=["run", *self.flags, "--sources", self.path("yes.gpkg"), "-o", self.path("no")])
+
     def test_check_lists_every_fault_and_every_field(self):
         self.write_sources("bad.gpkg", ogr.OFTReal, [-1.0, 1.0, 5000.0, None])
         nets = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("nets.gpkg"))

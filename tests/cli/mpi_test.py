@@ -5,7 +5,8 @@ import subprocess
 import time
 import unittest
 
-from support import RUN, RunCase
+from lanes_test import lanes_of_machine
+from support import OPEN_RUN, RUN, RunCase
 
 MPIRUN = [os.environ.get("MPIRUN", "mpirun"), "--oversubscribe"]
 TALUS_MPI = os.environ.get("TALUS_MPI", "talus-mpi")
@@ -38,6 +39,13 @@ class Mpi(RunCase):
         self.assert_same("whole", "limited")
         self.assertEqual(self.shared_names(), before)
         self.run_well("hazard", self.path("ranks4"), "-q")
+
+    def test_ranks_in_lanes(self):
+        self.write("s.toml", OPEN_RUN)
+        self.run_scenario("one", "--lanes", "1")
+        self.ranks(2, "ranks")
+        self.assertEqual((self.record("one")["lanes"], self.record("ranks")["lanes"]), (1, lanes_of_machine()))
+        self.assert_same("one", "ranks")
 
     def test_rounds_and_until_error(self):
         self.write("s.toml", RUN.replace("trajectories = 40\n", "trajectories = 150\n"))  # two units of work a source cell

@@ -146,7 +146,7 @@ class Content(Report):
         self.assertIn("relief", [image["id"] for image in page.all("image")])
         text = self.read_text("out/report.html")
         self.assertIn("<th>up to 30 years</th><th>30 to 100 years</th>", text)
-        self.assertIn("<tr><th>30 to 300 kJ</th><td>high</td><td>medium</td><td>medium</td><td>residual</td></tr>", text)
+        self.assertIn("<tr><th>more than 30 kJ</th><td>high</td><td>medium</td><td>medium</td><td>residual</td></tr>", text)
 
     def test_values_behind_the_click_are_those_of_the_files(self):
         self.results()

@@ -168,10 +168,9 @@ TEST(DiagnosisPage, ASignificantFamilyIsNoNoise) {
   EXPECT_TRUE(says(record_of(0.3, 0.01), something));
 }
 
-/// Warnings name what a costly diagnosis left out, and the flag that asks for it.
-TEST(CostlyWarnings, SayWhatWasLeftOut) {
+TEST(DiagnosisWarnings, NameWhatACostlyDiagnosisLeftOut) {
   DiagnosisRecord record = record_of(0.05, 0.01);
-  EXPECT_TRUE(costly_warnings(record).empty());
+  EXPECT_TRUE(diagnosis_warnings(record).empty());
   Diagnosis& d = record.diagnosis;
   d.stability.fits.resize(2);
   d.stability.left_out = 3;
@@ -180,10 +179,24 @@ TEST(CostlyWarnings, SayWhatWasLeftOut) {
   d.ended_early = true;
   const std::string costly =
       ": blocks of this campaign take long (more than 12 billion vertices traced or foreseen; --";
-  EXPECT_EQ(costly_warnings(record),
+  EXPECT_EQ(diagnosis_warnings(record),
             (std::vector<std::string>{
                 "the verdict is that of 2 fits of the ground, not of 5" + costly + "base-fits 5 makes all)",
                 "no effect was fitted after wet-ground" + costly + "most-effects 3 fits more)"}));
+}
+
+TEST(DiagnosisWarnings, OfFoldsThatSplitGroupsAndOfAModelThatNoFileHolds) {
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  record.diagnosis.nested.emplace();
+  EXPECT_TRUE(diagnosis_warnings(record).empty());
+  record.diagnosis.nested->folds.splits_groups = true;
+  Grid grid;
+  grid.columns = grid.rows = 1;
+  record.diagnosis.with_effects.model.zones = Raster<std::uint8_t>(grid, 0);
+  const std::vector<std::string> warnings = diagnosis_warnings(record);
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_EQ(warnings[0].find("the folds split groups"), 0U);
+  EXPECT_EQ(warnings[1].find("with_effect.toml is not the whole model"), 0U);
 }
 
 }  // namespace

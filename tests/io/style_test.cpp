@@ -233,6 +233,7 @@ TEST(VectorStyle, ClassesOfTheRaster) {
     std::vector<LegendClass> classes = classes_of(map_of(raster));
     const bool objects = layer == StyledLayer::AreaObjects || layer == StyledLayer::LineObjects;
     if (objects) classes.push_back({1e100, "no hit per year", "#bdbdbd"});  // which has no return period
+    if (layer == StyledLayer::Screens) classes.push_back({1e100, "no crossing", "#bdbdbd"});
     if (layer == StyledLayer::Stretches) classes.push_back({1e100, "too few crossings for a design", "#bdbdbd"});
     std::size_t i = 0;
     double upper = 0.0;

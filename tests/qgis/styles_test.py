@@ -119,7 +119,8 @@ class Project(unittest.TestCase):
         self.assertEqual(raster("Reach probability"), ["0 %", "up to 2 %", "2 to 5 %", "5 to 10 %", "10 to 20 %", "20 to 50 %", "50 to 100 %"])
         kj = ["up to 30 kJ", "30 to 100 kJ", "100 to 300 kJ", "300 to 1000 kJ", "1000 to 3000 kJ", "above 3000 kJ"]
         self.assertEqual(vector("Barrier at road: MEL by stretch"), kj + ["too few crossings for a design"])
-        for name in "Stops: largest energy of the path", "Ends off the map: energy", "Screens: energy, P95":
+        self.assertEqual(vector("Screens: energy, P95"), kj + ["no crossing"])
+        for name in "Stops: largest energy of the path", "Ends off the map: energy":
             self.assertEqual(vector(name), kj)
         self.assertEqual(vector("Paths: largest speed")[0], "up to 5 m/s")
 

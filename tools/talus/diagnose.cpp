@@ -129,7 +129,7 @@ int diagnose(const Options& options) {
     stop_interrupted();
   }
   for (const talus::io::BeforeAfter& e : record.errors) warn_of_scores(options, record, e.after);
-  for (const std::string& warning : talus::io::costly_warnings(record)) warn(options, record, warning);
+  for (const std::string& warning : talus::io::diagnosis_warnings(record)) warn(options, record, warning);
   record.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_results(opened.folder, opened.loaded, record);

@@ -50,6 +50,16 @@ bool groups_can_be_left_out(const Campaign& campaign, const std::vector<bool>& r
   return blocks.size() >= folds && 2 * largest <= all;
 }
 
+bool splits_groups(const Campaign& campaign, const OuterFolds& folds) {
+  std::map<std::string, std::uint32_t> fold_of;
+  for (std::size_t b = 0; b < folds.fold_of.size(); ++b) {
+    const std::string& group = campaign.blocks[b].group;
+    if (group.empty() || folds.fold_of[b] == kNoFold) continue;
+    if (fold_of.emplace(group, folds.fold_of[b]).first->second != folds.fold_of[b]) return true;
+  }
+  return false;
+}
+
 void forget(MeasuredBlock& block) {
   block.holdout = true;
   block.stop.reset();
@@ -96,6 +106,7 @@ OuterFolds outer_folds(const Campaign& campaign, const std::vector<bool>& rows, 
     for (const std::size_t b : unit.blocks) out.fold_of[b] = static_cast<std::uint32_t>(fold);
     blocks[fold] += unit.blocks.size();
   }
+  out.splits_groups = splits_groups(campaign, out);
   return out;
 }
 

@@ -25,6 +25,12 @@ double mean_of_blocks(const Score& score) {
   return blocks.empty() ? kNotGiven : sum / static_cast<double>(blocks.size());
 }
 
+/// 0 if half of the trials of a block leave the terrain, 1 if all do.
+double most_gone(const BlockRuns& runs) {
+  const double left = runs.ends[static_cast<std::size_t>(End::Left)];
+  return std::max(0.0, 2.0 * left / runs.trials - 1.0);
+}
+
 /// Scores the rows of one campaign group by group.
 class Scorer {
  public:
@@ -76,10 +82,9 @@ class Scorer {
         if (!std::isnan(runs_[b].x[t])) places.emplace_back(runs_[b].x[t], runs_[b].y[t]);
       const bool unseen = too_few(places.size());
       if (unseen) places = own_values_too() ? fitting.values : broad;
-      rows_.add(b,
-                options_.rule == ScoreRule::Fair ? fair_energy_score(places, *block.stop) / spread
-                                                 : -log_density(places, broad, *block.stop, spread),
-                unseen);
+      const double score = options_.rule == ScoreRule::Fair ? fair_energy_score(places, *block.stop) / spread
+                                                            : -log_density(places, broad, *block.stop, spread);
+      rows_.add(b, score + (options_.leaving_costs && !climatology_ ? kGone * most_gone(runs_[b]) : 0.0), unseen);
     });
     rows_.close("stop");
   }

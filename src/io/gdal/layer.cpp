@@ -192,6 +192,8 @@ std::optional<double> Layer::number(const OGRFeature& feature, int index, const 
     if (!number && text.find_first_not_of(' ') == std::string::npos) return std::nullopt;
     if (!number) throw InputError(where + "'" + text + "': " + no_number_text(text, unit, !is_csv()));
     value = *number;
+  } else if (fields().GetFieldDefn(index)->GetSubType() == OFSTBoolean) {
+    throw InputError(where + (value == 0.0 ? "no" : "yes") + " is of the type Boolean, must be a number field" + unit);
   } else if (type != OFTInteger && type != OFTInteger64 && type != OFTReal) {
     throw InputError(where + "'" + feature.GetFieldAsString(index) + "' is of the type " +
                      OGRFieldDefn::GetFieldTypeName(type) + ", must be a number field" + unit);

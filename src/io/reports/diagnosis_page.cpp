@@ -120,11 +120,12 @@ Markup errors_html(const DiagnosisRecord& record) {
       "<th>reduction, 95 %</th></tr>\n"_html;
   const std::vector<std::string> small = small_groups(record);
   const std::string unseen = rows_in_words(record.errors[record.unseen].after.rows) + " rows";
+  const std::string fitted =
+      choice_has_seen(record) ? " (not fitted, but the choice has seen them)" : " (never fitted)";
   if (!small.empty())
-    html +=
-        row("<b>"_html + unseen + " (never fitted), groups of " + std::to_string(kHeadlineRows) + " rows and more</b>",
-            record.headline.before, record.headline.after, &record.headline.reduction);
-  html += row(small.empty() ? "<b>"_html + unseen + " (never fitted)</b>" : Markup() + unseen + ", all groups",
+    html += row("<b>"_html + unseen + fitted + ", groups of " + std::to_string(kHeadlineRows) + " rows and more</b>",
+                record.headline.before, record.headline.after, &record.headline.reduction);
+  html += row(small.empty() ? "<b>"_html + unseen + fitted + "</b>" : Markup() + unseen + ", all groups",
               record.whole.before, record.whole.after, &record.whole.reduction);
   html += row("fitting rows"_html, d.base.score.total, d.with_effects.score.total, nullptr) + "</table>\n";
   html +=

@@ -104,8 +104,11 @@ Markup gained(const DiagnosisRecord& record) {
   if (std::isnan(e.before)) return "It cannot be said: no group of held-out rows is large enough."_html;
   ScoredRows rows = record.errors[record.unseen].after;
   if (!all) rows = in_large_groups(std::move(rows), record.clusters);
-  Markup text =
-      "On blocks that no fit has seen the error is "_html + with_decimals(e.before, 3) + " with the ground alone";
+  const bool seen = choice_has_seen(record);
+  Markup text = Markup() +
+                (seen ? "On blocks left out of the fits, but not of the choice of the effect, the error is "
+                      : "On blocks that no fit has seen the error is ") +
+                with_decimals(e.before, 3) + " with the ground alone";
   if (record.diagnosis.rounds.size() > 1 && !std::isnan(e.reduction.share))
     text += " and "_html + bold(with_decimals(e.after, 3)) + " with what was found: lower by " +
             bold(percent_in_tenths(e.reduction.share)) + " (95 %: " + percent_in_tenths(e.reduction.interval.low) +

@@ -66,6 +66,24 @@ std::string quick_folds_note(const DiagnosisRecord& record) {
          " (--no-quick-folds chooses anew)";
 }
 
+/// What a costly diagnosis left out, with the flag that asks for it.
+std::vector<std::string> costly_warnings(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
+  const std::string costly = ": blocks of this campaign take long (more than " +
+                             with_decimals(record.options.rules.enough, 0) + " billion vertices traced or foreseen; --";
+  std::vector<std::string> warnings;
+  if (d.stability.left_out > 0) {
+    const std::size_t made = d.stability.fits.size();
+    const std::string asked = std::to_string(record.options.base_fits_at_most());
+    warnings.push_back("the verdict is that of " + std::to_string(made) + (made == 1 ? " fit" : " fits") +
+                       " of the ground, not of " + asked + costly + "base-fits " + asked + " makes all)");
+  }
+  if (d.ended_early)
+    warnings.push_back("no effect was fitted after " + d.rounds[d.rounds.size() - 2].effect + costly + "most-effects " +
+                       std::to_string(record.options.effects_at_most()) + " fits more)");
+  return warnings;
+}
+
 }  // namespace
 
 std::string folds_text(const NestedValidation& nested) {
@@ -115,20 +133,24 @@ void judge_nested(const Campaign& campaign, DiagnosisRecord& record) {
   }
 }
 
-std::vector<std::string> costly_warnings(const DiagnosisRecord& record) {
+bool choice_has_seen(const DiagnosisRecord& record) {
+  const std::optional<NestedValidation>& nested = record.diagnosis.nested;
+  return nested && !nested->naming && record.errors[record.unseen].after.rows == "out-of-fold";
+}
+
+std::vector<std::string> diagnosis_warnings(const DiagnosisRecord& record) {
+  std::vector<std::string> warnings = costly_warnings(record);
   const Diagnosis& d = record.diagnosis;
-  const std::string costly = ": blocks of this campaign take long (more than " +
-                             with_decimals(record.options.rules.enough, 0) + " billion vertices traced or foreseen; --";
-  std::vector<std::string> warnings;
-  if (d.stability.left_out > 0) {
-    const std::size_t made = d.stability.fits.size();
-    const std::string asked = std::to_string(record.options.base_fits_at_most());
-    warnings.push_back("the verdict is that of " + std::to_string(made) + (made == 1 ? " fit" : " fits") +
-                       " of the ground, not of " + asked + costly + "base-fits " + asked + " makes all)");
-  }
-  if (d.ended_early)
-    warnings.push_back("no effect was fitted after " + d.rounds[d.rounds.size() - 2].effect + costly + "most-effects " +
-                       std::to_string(record.options.effects_at_most()) + " fits more)");
+  if (d.nested && d.nested->folds.splits_groups)
+    warnings.push_back(
+        "the folds split groups: a block is judged by a fit to others of its group, and the error out of fold may be "
+        "too low; whole groups need one for every fitting block, at least as many as --folds, and none with more than "
+        "half of the blocks");
+  if (!d.with_effects.model.zones.values.empty())
+    warnings.push_back(
+        "with_effect.toml is not the whole model: no file can hold the band of undeclared-zone, with which the rest "
+        "was "
+        "fitted; for a map take fitted.toml, or draw the band as a zone of its own and fit again");
   return warnings;
 }
 

@@ -135,14 +135,15 @@ Markup classes_html(const HazardFacts& hazard) {
   if (hazard.classes.empty() || hazard.energies.empty() || hazard.years.empty()) return {};
   Markup html =
       "<h3>Classes of hazard</h3>\n<p>For "_html + hazard.object +
-      ", by how often it is hit with an energy of each class: that with which blocks pass the place. A table of "
-      "objects "
-      "counts the largest within each outline, which is higher.</p>\n<table><tr><th>energy, return period</th>";
+      ", by how often it is hit with more than the energy of a row: that with which blocks pass the place. The highest "
+      "class of the rows counts. A table of objects takes the largest energy within each outline, which is "
+      "higher.</p>\n"
+      "<table><tr><th>energy, return period</th>";
   for (std::size_t k = 0; k < hazard.classes.front().size(); ++k)
     html += "<th>"_html + between(hazard.years, k, " years") + "</th>";
   html += "</tr>\n";
   for (std::size_t i = 0; i < hazard.classes.size(); ++i) {
-    html += "<tr><th>"_html + between(hazard.energies, i, " kJ") + "</th>";
+    html += "<tr><th>"_html + (i == 0 ? "any" : "more than " + readable(hazard.energies[i - 1]) + " kJ") + "</th>";
     for (const std::string& name : hazard.classes[i]) html += "<td>"_html + name + "</td>";
     html += "</tr>\n";
   }

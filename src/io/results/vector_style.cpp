@@ -43,6 +43,7 @@ constexpr const char* kReturnPeriod =
 constexpr const char* kLargestEnergy = R"(0.0005 * "mass_kg" * "max_speed_ms" ^ 2)";
 
 constexpr const char* kNoHit = "no hit per year";  // of no block, or of blocks of sources with a frequency of 0
+constexpr const char* kNoCrossing = "no crossing";
 constexpr const char* kNoDesign = "too few crossings for a design";
 
 // Lines at one place, as a road that is an object, a screen and the line of a net, are drawn above each other, the
@@ -56,7 +57,7 @@ Look look_of(StyledLayer layer) {
     case StyledLayer::Trajectories:
       return {Symbol::Line, "\"max_speed_ms\"", legend_of("velocity"), 0.25, 0.25};
     case StyledLayer::Screens:
-      return {Symbol::Line, "\"energy_kj_p95\"", legend_of("energy"), 3.0, 3.0};
+      return {Symbol::Line, "coalesce(\"energy_kj_p95\", 1e99)", legend_of("energy"), 3.0, 3.0, kNoCrossing};
     case StyledLayer::AreaObjects:
       return {Symbol::Area, kReturnPeriod, legend_of("return_period_<kJ>"), 0.4, 0.4, kNoHit};
     case StyledLayer::Stretches:

@@ -75,6 +75,11 @@ void tell_of_effects(LoadedScenario& out) {
     out.notes.push_back(use.text);
     for (std::string& warning : stand_warnings(*use.entry, out.scenario)) out.warnings.push_back(std::move(warning));
   }
+  const auto of_days = [&](const EffectUse& use) { return use.entry->days(out.scenario.effects) != nullptr; };
+  if (out.scenario.day != 0 && std::ranges::none_of(out.effects, of_days))
+    out.warnings.push_back("day = " + std::to_string(out.scenario.day) +
+                           " changes nothing: no effect that depends on the day is on; give [effects.wet-ground], or " +
+                           "leave day out");
 }
 
 }  // namespace talus::io

@@ -51,6 +51,9 @@ class SpecReader {
     read_output(top.table("output"));
     TableReader screens = top.table("screens");
     named_file(screens, "file", spec_.screens);
+    if (screens.value() != nullptr && screens.find("file") == nullptr)
+      faults_.push_back(file_ + ":" + std::to_string(screens.value()->line) +
+                        ": [screens] names no file, must have file = \"...\", the lines of the screens");
     screens.finish();
     TableReader barriers = top.table("barriers");
     named_file(barriers, "file", spec_.barriers);

@@ -224,6 +224,7 @@ GERMAN = {
     "0 1/year": "0 1/Jahr",
     "0 years": "0 Jahre",
     "no hit per year": "kein Treffer pro Jahr",
+    "no crossing": "kein Durchgang",
     "too few crossings for a design": "zu wenige Durchgänge für eine Bemessung",
     "Line of the barrier, by stretch": "Linie des Schutznetzes, je Abschnitt",
     "none": "keine",

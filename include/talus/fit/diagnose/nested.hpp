@@ -16,6 +16,7 @@ struct OuterFolds {
   std::size_t count = 0;
   bool by_group = false;               ///< whole groups are left out; false: blocks
   std::vector<std::uint32_t> fold_of;  ///< by block: below `count`, or kNoFold
+  bool splits_groups = false;          ///< blocks of one group are in several folds
 };
 
 /// Cuts by `group` where every block has one, there are at least as many groups as folds, and none holds more than half

@@ -45,6 +45,8 @@ inline constexpr std::size_t kFewestRows = 5;
 /// Rise of the score of a row if all trials of its block were cut short; of some, their share of it. A model that
 /// climatology beats by far is still better than one whose blocks do not come to an end. docs/diagnosis-time.md.
 inline constexpr double kCutShort = 4.0;
+/// Rise of the score of a measured place of rest, in a fit, if all trials of its block leave the terrain.
+inline constexpr double kGone = 4.0;
 
 /// The rule that turns a measurement and its simulated values into a score.
 enum class ScoreRule {
@@ -62,11 +64,15 @@ struct ScoreOptions {
   /// a fit minimises: a block's own value makes the climatology better than a right model, and a fit would do well to
   /// keep the blocks from a screen where few were measured.
   bool own_value_too = true;
+  /// The row of a place of rest rises if most trials of its block leave the terrain: by kGone if all do, by nothing if
+  /// half do. Not so in score.py. Without it a fit would do well to send the blocks off the map: a row without
+  /// simulated stops scores as the climatology.
+  bool leaving_costs = false;
 };
 
 /// How the rows are scored that a fit minimises, and that decide between fits.
 inline ScoreOptions fit_scoring(std::size_t fewest_simulated = kFewestSimulated) {
-  return {ScoreRule::Fair, fewest_simulated, {}, false};
+  return {ScoreRule::Fair, fewest_simulated, {}, false, true};
 }
 
 /// Scores the simulations of the asked blocks against their measurements, as defined in docs/closing-the-loop.md, "The

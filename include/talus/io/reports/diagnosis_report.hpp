@@ -39,11 +39,15 @@ struct DiagnosisRecord : FitRecord {
 /// false.
 void open_holdout(const Campaign& campaign, DiagnosisRecord& record);
 
+/// Whether the unseen rows have taken part in the choice of the effect, though not in the fits: quick folds.
+bool choice_has_seen(const DiagnosisRecord& record);
+
 /// The verdict over all base fits, the log score and what the folds found, as lines for the terminal.
 std::string repeated_lines(const DiagnosisRecord& record);
 
-/// Warnings of what a costly diagnosis left out (`DiagnosisRules::enough`), with the flag that asks for it.
-std::vector<std::string> costly_warnings(const DiagnosisRecord& record);
+/// Warnings of what a costly diagnosis left out (`DiagnosisRules::enough`), with the flag that asks for it; of folds
+/// that split groups; of a model that no file can hold.
+std::vector<std::string> diagnosis_warnings(const DiagnosisRecord& record);
 
 /// Names of the groups of fewer than ten unseen rows, with their rows: they stay out of the headline.
 std::vector<std::string> small_groups(const DiagnosisRecord& record);

@@ -24,6 +24,7 @@ TEST(OuterFolds, EveryFittingBlockIsLeftOutOnceAndNoOther) {
   const Campaign c = campaign_on_slope(45);
   const OuterFolds folds = outer_folds(c, fitting_rows(c), 5, 1);
   EXPECT_FALSE(folds.by_group);
+  EXPECT_FALSE(folds.splits_groups) << "there are none";
   EXPECT_EQ(sizes_of(folds), std::vector<std::size_t>(5, 6));
   for (std::size_t b = 0; b < 45; ++b) EXPECT_EQ(folds.fold_of[b] == kNoFold, c.blocks[b].holdout);
 }
@@ -50,7 +51,10 @@ TEST(OuterFolds, WholeGroupsWhereThereAreEnough) {
   const std::vector<std::size_t> sizes = sizes_of(folds);
   EXPECT_GT(*std::ranges::min_element(sizes), 0U);
   for (std::size_t b = 0; b < 45; ++b) c.blocks[b].group = "site " + std::to_string(b % 4);
+  EXPECT_FALSE(folds.splits_groups);
   EXPECT_FALSE(outer_folds(c, fitting_rows(c), 5, 1).by_group) << "four groups are no five folds";
+  EXPECT_TRUE(outer_folds(c, fitting_rows(c), 5, 1).splits_groups);
+  EXPECT_FALSE(outer_folds(c, fitting_rows(c), 4, 1).splits_groups);
   for (std::size_t b = 0; b < 45; ++b) c.blocks[b].group = b < 30 ? "one" : "site " + std::to_string(b);
   EXPECT_FALSE(outer_folds(c, fitting_rows(c), 5, 1).by_group) << "without the largest, too few are left";
   c.blocks[0].group.clear();

@@ -207,6 +207,23 @@ TEST_F(Scores, WhatASearchCutsShortRaisesTheRowsOfItsBlock) {
     EXPECT_NEAR(cut.rows[r].score - whole.rows[r].score, cut.rows[r].block == 6 ? 4.0 * 5.0 / 20.0 : 0.0, 1e-12);
 }
 
+/// In what a fit minimises a block that has come to rest is not explained by trials that leave the map: without stops
+/// its row scores as the climatology, which is better than many a model.
+TEST_F(Scores, AFitGainsNothingBySendingBlocksOffTheMap) {
+  const std::vector<bool> rows = fitting_rows(campaign_);
+  const Score before = score(campaign_, runs_, rows, fit_scoring());
+  for (const auto& [left, rise] : {std::pair{10U, 0.0}, {15U, 2.0}, {20U, 4.0}}) {  // of 20 trials
+    std::vector<BlockRuns> runs = runs_;
+    runs[6].ends[static_cast<std::size_t>(End::Left)] = left;
+    const Score after = score(campaign_, runs, rows, fit_scoring());
+    for (std::size_t r = 0; r < after.rows.size(); ++r) {
+      const bool stop = after.groups[after.rows[r].group].name == "stop" && after.rows[r].block == 6;
+      EXPECT_NEAR(after.rows[r].score - before.rows[r].score, stop ? rise : 0.0, 1e-12);
+    }
+    EXPECT_DOUBLE_EQ(score(campaign_, runs, rows).total, score(campaign_, runs_, rows).total);  // as score.py has it
+  }
+}
+
 /// Trials that end in a wrong place and are cut short never make a model look better than the same trials to their end.
 TEST_F(Scores, CuttingTrialsShortIsNoWayToABetterScore) {
   const std::vector<bool> rows = fitting_rows(campaign_);
