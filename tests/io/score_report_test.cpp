@@ -39,5 +39,22 @@ TEST(InLargeGroups, NothingIsSaidOfSkillWhereNoGroupIsLarge) {
   EXPECT_EQ(skill_sentence(in_large_groups(rows, std::vector<std::uint32_t>{0, 1})), "");
 }
 
+/// Rows that score as the climatology for want of simulated values are no skill of the model, whatever the figures are.
+TEST(SkillSentence, IsNotOfAModelThatHardlySimulates) {
+  ScoredRows rows;
+  rows.rows = "fit";
+  rows.score = of_two_groups(0.5, 0.5);
+  rows.score.groups[0].unseen = 7;  // of 14 rows: a half is still told
+  rows.climatology = of_two_groups(0.8, 0.8);
+  rows.skill.share = 0.3;
+  EXPECT_NE(skill_sentence(rows).find("skill 30.0 %"), std::string::npos);
+  rows.score.groups[0].unseen = 8;
+  EXPECT_EQ(
+      skill_sentence(rows),
+      "fitting rows: skill cannot be told: 8 of 14 rows have too few simulated values and score as the climatology");
+  const std::vector<std::uint32_t> clusters{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+  EXPECT_TRUE(std::isnan(in_large_groups(rows, clusters).skill.share));
+}
+
 }  // namespace
 }  // namespace talus::io

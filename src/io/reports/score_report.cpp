@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "coverage_report.hpp"
 #include "deposit_report.hpp"
@@ -62,6 +63,17 @@ Json tail_json(const ScoredRows& s) {
           {"rows", s.tail.rows.size()}};
 }
 
+std::uint32_t unseen_rows(const Score& score) {
+  return std::accumulate(score.groups.begin(), score.groups.end(), 0U,
+                         [](std::uint32_t sum, const GroupScore& group) { return sum + group.unseen; });
+}
+
+/// Of a model that seldom simulates what was measured: most of its rows score as the climatology, which is no skill.
+Reduction skill_of(const Score& score, const Score& climatology, std::span<const std::uint32_t> clusters) {
+  if (score.rows.empty() || 2 * unseen_rows(score) > score.rows.size()) return {};
+  return reduction(climatology, score, clusters);
+}
+
 }  // namespace
 
 std::string rows_in_words(const std::string& rows) {
@@ -79,7 +91,7 @@ ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<c
   out.intervals = score_intervals(out.score, clusters);
   out.climatology = score_of_climatology(campaign, ask, how);
   out.climatology_interval = score_intervals(out.climatology, clusters).total;
-  out.skill = reduction(out.climatology, out.score, clusters);
+  out.skill = skill_of(out.score, out.climatology, clusters);
   out.tail_begin = tail_begin(campaign);
   out.tail = tail_score(campaign, runs, ask, folds);
   out.tail_interval = score_intervals(out.tail, clusters).total;
@@ -107,12 +119,14 @@ BeforeAfter compared(const Campaign& campaign, ScoredRows before, ScoredRows aft
 ScoredRows in_large_groups(ScoredRows scored, std::span<const std::uint32_t> clusters) {
   scored.score = of_large_groups(scored.score);
   scored.climatology = of_large_groups(scored.climatology);
-  scored.skill = {};
-  if (!scored.score.rows.empty()) scored.skill = reduction(scored.climatology, scored.score, clusters);
+  scored.skill = skill_of(scored.score, scored.climatology, clusters);
   return scored;
 }
 
 std::string skill_sentence(const ScoredRows& s) {
+  if (const std::uint32_t unseen = unseen_rows(s.score); 2 * unseen > s.score.rows.size())
+    return rows_in_words(s.rows) + " rows: skill cannot be told: " + std::to_string(unseen) + " of " +
+           std::to_string(s.score.rows.size()) + " rows have too few simulated values and score as the climatology";
   if (std::isnan(s.skill.share)) return {};
   const std::string errors = with_decimals(s.score.total, 3) + " against the climatology's " +
                              with_decimals(s.climatology.total, 3) +
