@@ -84,13 +84,12 @@ std::vector<Score> OutOfFold::objectives(const DiagnoseOptions& options, std::ui
   const std::vector<bool> rows = problem_.rows();
   ObserveOptions how{options.trials.compare, options.seed, 0, options.threads, {}, {}, effort_of(rules.search)};
   how.traced = options.traced;
+  ScoreOptions scoring = fit_scoring();
   std::vector<Score> scores;
   for (std::uint32_t number = 0; number < rules.fold_orders; ++number) {
     how.first_trial = round + (1 + before + number) * how.trials;  // new ones for each
-    const std::vector<std::uint32_t> fold_of =
-        folds_of(random_order(streams, rows, options.seed, number), rows.size(), rules.folds);
-    scores.push_back(weigh_groups(
-        joined_score(problem_, runs(how, fold_of, rules.folds), {ScoreRule::Fair, kFewestSimulated, fold_of})));
+    scoring.folds = folds_of(random_order(streams, rows, options.seed, number), rows.size(), rules.folds);
+    scores.push_back(weigh_groups(joined_score(problem_, runs(how, scoring.folds, rules.folds), scoring)));
   }
   return scores;
 }

@@ -66,7 +66,7 @@ std::string quick_folds_note(const DiagnosisRecord& record) {
          " (--no-quick-folds chooses anew)";
 }
 
-/// What a costly diagnosis left out, with the flag that asks for it.
+/// Warnings of what a costly diagnosis left out, with the flag that asks for it.
 std::vector<std::string> costly_warnings(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
   const std::string costly = ": blocks of this campaign take long (more than " +
@@ -135,7 +135,7 @@ void judge_nested(const Campaign& campaign, DiagnosisRecord& record) {
 
 bool choice_has_seen(const DiagnosisRecord& record) {
   const std::optional<NestedValidation>& nested = record.diagnosis.nested;
-  return nested && !nested->naming && record.errors[record.unseen].after.rows == "out-of-fold";
+  return nested && !nested->naming && record.errors[record.unseen].after.rows == kOutOfFold;
 }
 
 std::vector<std::string> diagnosis_warnings(const DiagnosisRecord& record) {
@@ -144,13 +144,13 @@ std::vector<std::string> diagnosis_warnings(const DiagnosisRecord& record) {
   if (d.nested && d.nested->folds.splits_groups)
     warnings.push_back(
         "the folds split groups: a block is judged by a fit to others of its group, and the error out of fold may be "
-        "too low; whole groups need one for every fitting block, at least as many as --folds, and none with more than "
-        "half of the blocks");
+        "too low; give every fitting block a group, or fewer --folds (a group of more than half of the blocks is "
+        "always "
+        "split)");
   if (!d.with_effects.model.zones.values.empty())
     warnings.push_back(
         "with_effect.toml is not the whole model: no file can hold the band of undeclared-zone, with which the rest "
-        "was "
-        "fitted; for a map take fitted.toml, or draw the band as a zone of its own and fit again");
+        "was fitted; for a map take fitted.toml, or draw the band as a zone of its own and fit again");
   return warnings;
 }
 

@@ -123,7 +123,7 @@ Markup settings_html(const RunFacts& run) {
          table([&](const RecordedSetting& s) { return !given(s); }) + "</details>\n";
 }
 
-/// "30 to 300 kJ": the class of that number between limits.
+/// "30 to 100 years": the class of that number between limits.
 std::string between(const std::vector<double>& limits, std::size_t number, const std::string& unit) {
   if (number == 0) return "up to " + readable(limits.front()) + unit;
   if (number >= limits.size()) return "above " + readable(limits.back()) + unit;

@@ -68,7 +68,8 @@ std::uint32_t unseen_rows(const Score& score) {
                          [](std::uint32_t sum, const GroupScore& group) { return sum + group.unseen; });
 }
 
-/// Of a model that seldom simulates what was measured: most of its rows score as the climatology, which is no skill.
+/// Skill against the climatology; NaN for a model that seldom simulates what was measured: most of its rows score as
+/// the climatology.
 Reduction skill_of(const Score& score, const Score& climatology, std::span<const std::uint32_t> clusters) {
   if (score.rows.empty() || 2 * unseen_rows(score) > score.rows.size()) return {};
   return reduction(climatology, score, clusters);
