@@ -1,4 +1,5 @@
 """`talus score` and `talus calibrate` as a user calls them; the score against an independent implementation."""
+import csv
 import importlib.util
 import json
 import math
@@ -8,6 +9,7 @@ import warnings
 
 from support import NORTH, WEST, Case
 
+ELM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../data/elm")
 CAMPAIGNS = os.path.join(os.environ.get("TALUS_DATA", ""), "campaigns")
 PRESET = '[ground]\ndefault = "forest-road-3d"\n'
 
@@ -74,6 +76,30 @@ class AgainstTheReference(Case):
     def test_stops_alone(self):
         self.compare("authume", 40)
         self.compare("tschamut", 40)
+
+
+class BlocksThatLeave(Case):
+    """A ground that hardly brakes sends blocks off the DEM that were measured at rest on it."""
+
+    SMOOTH = '[ground]\ndefault = "upper-talus-3d"\n[ground.zones.default]\nEn50 = 60\nEt50 = 200\ntheta_scale = 0.3\n'
+
+    def test_they_are_counted(self):
+        done = self.run_well("score", ELM + "/campaign.toml", "--parameters", self.write("smooth.toml", self.SMOOTH), "--trials",
+                             "20", "--dump", self.path("dump"))
+        left = {}
+        for row in self.read_table("dump/stops.csv"):
+            left[row["block"]] = left.get(row["block"], 0) + (row["end"] == "left")
+        with open(ELM + "/blocks.csv", encoding="utf-8") as file:
+            held_out = {row["id"]: row["holdout"] == "1" for row in csv.DictReader(file)}
+        with open(ELM + "/stops.csv", encoding="utf-8") as file:
+            at_rest = {row["id"] for row in csv.DictReader(file)}
+        for words, held in (("fitting", False), ("held-out", True)):
+            blocks = [b for b in held_out if held_out[b] == held]
+            leaving = sum(left[b] > 10 for b in blocks if b in at_rest)
+            self.assertGreater(leaving, 0)
+            self.assertIn(f"warning: most trials of {leaving} of {len(blocks)} {words} blocks leave the DEM, though these", done.stderr)
+        good = self.write("good.toml", PRESET)
+        self.assertNotIn("leave the DEM", self.run_well("score", ELM + "/campaign.toml", "--parameters", good).stderr)
 
 
 class OwnCampaign(Case):

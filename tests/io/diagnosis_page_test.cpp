@@ -168,6 +168,26 @@ TEST(DiagnosisPage, ASignificantFamilyIsNoNoise) {
   EXPECT_TRUE(says(record_of(0.3, 0.01), something));
 }
 
+/// Quick folds leave a block out of the fits, but the effect was chosen with it.
+TEST(DiagnosisPage, SaysWhatTheUnseenRowsHaveTakenPartIn) {
+  const std::string not_of_choice = "On blocks left out of the fits, but not of the choice of the effect, the error is";
+  const std::string no_fit = "On blocks that no fit has seen the error is";
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  record.whole.before = record.whole.after = 0.6;
+  record.errors.front().after.rows = "out-of-fold";
+  record.errors.front().after.blocks = 12;
+  EXPECT_TRUE(says(record, no_fit));
+  record.diagnosis.nested.emplace().naming = false;
+  EXPECT_TRUE(says(record, not_of_choice));
+  EXPECT_EQ(count_of(diagnosis_page(Campaign{}, record), "(not fitted, but the choice has seen them)"), 1U);
+  record.diagnosis.nested->naming = true;
+  EXPECT_TRUE(says(record, no_fit));
+  EXPECT_EQ(count_of(diagnosis_page(Campaign{}, record), "(never fitted)"), 1U);
+  record.diagnosis.nested->naming = false;
+  record.diagnosis.rounds.resize(1);  // no effect was chosen
+  EXPECT_TRUE(says(record, no_fit));
+}
+
 TEST(DiagnosisWarnings, NameWhatACostlyDiagnosisLeftOut) {
   DiagnosisRecord record = record_of(0.05, 0.01);
   EXPECT_TRUE(diagnosis_warnings(record).empty());

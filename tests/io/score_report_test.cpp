@@ -40,20 +40,44 @@ TEST(InLargeGroups, NothingIsSaidOfSkillWhereNoGroupIsLarge) {
 }
 
 /// Rows that score as the climatology for want of simulated values are no skill of the model, whatever the figures are.
+/// What counts is their share of the score, in which a group of two rows weighs as much as one of twelve.
 TEST(SkillSentence, IsNotOfAModelThatHardlySimulates) {
   ScoredRows rows;
   rows.rows = "fit";
   rows.score = of_two_groups(0.5, 0.5);
-  rows.score.groups[0].unseen = 7;  // of 14 rows: a half is still told
+  rows.score.groups[0].unseen = 12;  // one of the two groups: a half is still told
   rows.climatology = of_two_groups(0.8, 0.8);
   rows.skill.share = 0.3;
   EXPECT_NE(skill_sentence(rows).find("skill 30.0 %"), std::string::npos);
-  rows.score.groups[0].unseen = 8;
-  EXPECT_EQ(
-      skill_sentence(rows),
-      "fitting rows: skill cannot be told: 8 of 14 rows have too few simulated values and score as the climatology");
+  rows.score.groups[1].unseen = 1;
+  EXPECT_EQ(skill_sentence(rows),
+            "fitting rows: skill cannot be told: 75 % of the score is of rows that have too few simulated values and "
+            "score as the climatology");
+  rows.score.groups[0].unseen = 7;  // the large group alone
   const std::vector<std::uint32_t> clusters{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
   EXPECT_TRUE(std::isnan(in_large_groups(rows, clusters).skill.share));
+}
+
+TEST(TailSentence, IsNotOfAModelThatHardlySimulates) {
+  ScoredRows rows;
+  rows.rows = "holdout";
+  rows.tail_begin = 56.0;
+  rows.tail = rows.tail_climatology = of_two_groups(0.5, 0.5);
+  rows.tail.groups.resize(1);
+  rows.tail.groups[0].unseen = 6;
+  EXPECT_NE(tail_sentence(rows).find("0.500 against"), std::string::npos) << "a half of twelve rows is told";
+  rows.tail.groups[0].unseen = 7;
+  EXPECT_EQ(tail_sentence(rows), "held-out rows: run-out beyond 56 m: cannot be told: few trials come to rest");
+}
+
+TEST(ScoreWarnings, OfBlocksThatCameToRestButLeaveInTheModel) {
+  ScoredRows rows;
+  rows.rows = "fit";
+  rows.blocks = 24;
+  EXPECT_TRUE(score_warnings(rows).empty());
+  rows.leaving = 3;
+  ASSERT_EQ(score_warnings(rows).size(), 1U);
+  EXPECT_EQ(score_warnings(rows)[0].find("most trials of 3 of 24 fitting blocks leave the DEM"), 0U);
 }
 
 }  // namespace

@@ -32,5 +32,20 @@ TEST(SitesReport, SaysWhereNoPropertyWasTested) {
       "named for them.\n");
 }
 
+TEST(SitesReport, WarnsOfTheSitesWhoseFoldsSplitGroups) {
+  SitesRecord record;
+  EXPECT_TRUE(sites_warnings(record).empty());
+  record.diagnosis.sites.resize(2);
+  record.diagnosis.sites[1].name = "two";
+  record.diagnosis.nested.resize(2);
+  EXPECT_TRUE(sites_warnings(record).empty());
+  record.diagnosis.nested[1].folds.splits_groups = true;
+  record.diagnosis.not_nested = "eight rows";
+  const std::vector<std::string> warnings = sites_warnings(record);
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_NE(warnings[0].find("eight rows"), std::string::npos);
+  EXPECT_EQ(warnings[1].find("two: the folds split groups"), 0U);
+}
+
 }  // namespace
 }  // namespace talus::io

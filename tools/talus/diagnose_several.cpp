@@ -54,8 +54,7 @@ int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOption
   talus::io::open_holdout(opened.sites, record, unseen);
   if (interrupted()) stop_interrupted();
   warn_of_sites(command, record, record.evidence);
-  if (const std::string& lack = record.diagnosis.not_nested; !lack.empty())
-    warn(command, record, "there is no error of unseen rows: " + lack + " (measure more, or hold rows out)");
+  for (const std::string& warning : talus::io::sites_warnings(record)) warn(command, record, warning);
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_results(opened, record);
   opened.folder.commit();

@@ -135,18 +135,14 @@ void judge_nested(const Campaign& campaign, DiagnosisRecord& record) {
 
 bool choice_has_seen(const DiagnosisRecord& record) {
   const std::optional<NestedValidation>& nested = record.diagnosis.nested;
-  return nested && !nested->naming && record.errors[record.unseen].after.rows == kOutOfFold;
+  const bool chosen = record.diagnosis.rounds.size() > 1;
+  return chosen && nested && !nested->naming && record.errors[record.unseen].after.rows == kOutOfFold;
 }
 
 std::vector<std::string> diagnosis_warnings(const DiagnosisRecord& record) {
   std::vector<std::string> warnings = costly_warnings(record);
   const Diagnosis& d = record.diagnosis;
-  if (d.nested && d.nested->folds.splits_groups)
-    warnings.push_back(
-        "the folds split groups: a block is judged by a fit to others of its group, and the error out of fold may be "
-        "too low; give every fitting block a group, or fewer --folds (a group of more than half of the blocks is "
-        "always "
-        "split)");
+  if (d.nested && d.nested->folds.splits_groups) warnings.emplace_back(kSplitGroups);
   if (!d.with_effects.model.zones.values.empty())
     warnings.push_back(
         "with_effect.toml is not the whole model: no file can hold the band of undeclared-zone, with which the rest "

@@ -9,6 +9,11 @@
 /// docs/diagnosis-evidence.md.
 namespace talus::io {
 
+/// Warning of folds that split groups (`OuterFolds::splits_groups`).
+inline constexpr const char* kSplitGroups =
+    "the folds split groups: a block is judged by a fit to others of its group, and the error out of fold may be too "
+    "low; give every fitting block a group, or fewer --folds (a group of more than half of the blocks is always split)";
+
 /// Scores the blocks that were simulated out of their folds: rows "out-of-fold".
 BeforeAfter out_of_fold_rows(const Campaign& campaign, const NestedValidation& nested);
 

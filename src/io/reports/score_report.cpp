@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "coverage_report.hpp"
 #include "deposit_report.hpp"
@@ -63,16 +62,32 @@ Json tail_json(const ScoredRows& s) {
           {"rows", s.tail.rows.size()}};
 }
 
-std::uint32_t unseen_rows(const Score& score) {
-  return std::accumulate(score.groups.begin(), score.groups.end(), 0U,
-                         [](std::uint32_t sum, const GroupScore& group) { return sum + group.unseen; });
+/// Share of a score, on average over its groups, that is of rows with too few simulated values: these score as the
+/// climatology.
+double unseen_share(const Score& score) {
+  double share = 0.0;
+  for (const GroupScore& group : score.groups) share += static_cast<double>(group.unseen) / group.rows;
+  return score.groups.empty() ? 0.0 : share / static_cast<double>(score.groups.size());
 }
 
-/// Skill against the climatology; NaN for a model that seldom simulates what was measured: most of its rows score as
-/// the climatology.
+/// A score is hardly the model's own if the model seldom simulates what was measured.
+bool hardly_simulated(const Score& score) {
+  return unseen_share(score) > 0.5;
+}
+
+/// Skill against the climatology; NaN for a model that hardly simulates what was measured.
 Reduction skill_of(const Score& score, const Score& climatology, std::span<const std::uint32_t> clusters) {
-  if (score.rows.empty() || 2 * unseen_rows(score) > score.rows.size()) return {};
+  if (score.rows.empty() || hardly_simulated(score)) return {};
   return reduction(climatology, score, clusters);
+}
+
+/// Number of blocks that were measured at rest, of which most simulated trials leave the DEM.
+std::size_t blocks_that_leave(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
+  std::size_t leaving = 0;
+  for (std::size_t b = 0; b < runs.size(); ++b)
+    if (ask[b] && campaign.blocks[b].stop && 2 * runs[b].ends[static_cast<std::size_t>(End::Left)] > runs[b].trials)
+      ++leaving;
+  return leaving;
 }
 
 }  // namespace
@@ -98,6 +113,7 @@ ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<c
   out.tail_interval = score_intervals(out.tail, clusters).total;
   out.tail_climatology = tail_score_of_climatology(campaign, ask, folds);
   out.coverage = coverage(campaign, runs, ask);
+  out.leaving = blocks_that_leave(campaign, runs, ask);
   if (campaign.deposits != nullptr) {
     out.deposits = check_deposits(campaign, runs, ask);
     return out;
@@ -125,9 +141,9 @@ ScoredRows in_large_groups(ScoredRows scored, std::span<const std::uint32_t> clu
 }
 
 std::string skill_sentence(const ScoredRows& s) {
-  if (const std::uint32_t unseen = unseen_rows(s.score); 2 * unseen > s.score.rows.size())
-    return rows_in_words(s.rows) + " rows: skill cannot be told: " + std::to_string(unseen) + " of " +
-           std::to_string(s.score.rows.size()) + " rows have too few simulated values and score as the climatology";
+  if (hardly_simulated(s.score))
+    return rows_in_words(s.rows) + " rows: skill cannot be told: " + percent(unseen_share(s.score)) +
+           " of the score is of rows that have too few simulated values and score as the climatology";
   if (std::isnan(s.skill.share)) return {};
   const std::string errors = with_decimals(s.score.total, 3) + " against the climatology's " +
                              with_decimals(s.climatology.total, 3) +
@@ -145,8 +161,9 @@ std::string skill_sentence(const ScoredRows& s) {
 
 std::string tail_sentence(const ScoredRows& s) {
   if (s.tail.groups.empty()) return {};
-  return rows_in_words(s.rows) + " rows: run-out beyond " + with_digits(s.tail_begin, 3) +
-         " m: " + with_decimals(s.tail.total, 3) + " against the climatology's " +
+  const std::string beyond = rows_in_words(s.rows) + " rows: run-out beyond " + with_digits(s.tail_begin, 3) + " m: ";
+  if (hardly_simulated(s.tail)) return beyond + "cannot be told: few trials come to rest";
+  return beyond + with_decimals(s.tail.total, 3) + " against the climatology's " +
          with_decimals(s.tail_climatology.total, 3) + (s.tail.total < s.tail_climatology.total ? "" : ": no skill");
 }
 
@@ -158,6 +175,11 @@ std::vector<std::string> score_warnings(const ScoredRows& s) {
                          rows_in_words(s.rows) + " rows have fewer than " + std::to_string(kFewestSimulated) +
                          " simulated values and score as the climatology: the model seldom does there what was "
                          "measured, and the score says nothing of it (more trials may help)");
+  if (s.leaving > 0)
+    warnings.push_back("most trials of " + std::to_string(s.leaving) + " of " + std::to_string(s.blocks) + " " +
+                       rows_in_words(s.rows) +
+                       " blocks leave the DEM, though these came to rest on it: the DEM is too small (a fit then makes "
+                       "run-outs too short), take a larger one; or the ground lets blocks go too far");
   for (std::string& warning : coverage_warnings(s)) warnings.push_back(std::move(warning));
   return warnings;
 }

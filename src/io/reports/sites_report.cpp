@@ -271,6 +271,16 @@ Markup ground_html(const SitesDiagnosis& d) {
 
 }  // namespace
 
+std::vector<std::string> sites_warnings(const SitesRecord& record) {
+  const SitesDiagnosis& d = record.diagnosis;
+  std::vector<std::string> warnings;
+  if (!d.not_nested.empty())
+    warnings.push_back("there is no error of unseen rows: " + d.not_nested + " (measure more, or hold rows out)");
+  for (std::size_t i = 0; i < d.nested.size(); ++i)
+    if (d.nested[i].folds.splits_groups) warnings.push_back(d.sites[i].name + ": " + kSplitGroups);
+  return warnings;
+}
+
 std::string sites_json(const SitesRecord& record) {
   const SitesDiagnosis& d = record.diagnosis;
   const JointRound& first = d.rounds.front();

@@ -39,7 +39,7 @@ struct DiagnosisRecord : FitRecord {
 /// false.
 void open_holdout(const Campaign& campaign, DiagnosisRecord& record);
 
-/// Whether the unseen rows have taken part in the choice of the effect, though not in the fits: quick folds.
+/// Whether the unseen rows have taken part in the choice of an effect, though not in the fits: quick folds.
 bool choice_has_seen(const DiagnosisRecord& record);
 
 /// The verdict over all base fits, the log score and what the folds found, as lines for the terminal.

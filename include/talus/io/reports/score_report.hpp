@@ -27,6 +27,7 @@ struct ScoredRows {
   std::vector<Coverage> coverage;
   Score log_score, log_climatology;      ///< minus log densities [nats]
   std::optional<DepositCheck> deposits;  ///< of blocks that were mapped where they lie
+  std::size_t leaving = 0;               ///< blocks measured at rest of which most simulated trials leave the DEM
 };
 
 /// The score of the model before and after a fit, on rows of one kind.
@@ -60,8 +61,8 @@ struct ScoreSettings {
 BeforeAfter compared(const Campaign& campaign, ScoredRows before, ScoredRows after);
 
 /// One warning for each group in which more than half of the rows score as the climatology (such rows do not score the
-/// model, so that a fit can hide its errors there), and for each share of measured values below a simulated percentile
-/// that a right model does not give.
+/// model, so that a fit can hide its errors there), one for blocks that leave the DEM, and one for each share of
+/// measured values below a simulated percentile that a right model does not give.
 std::vector<std::string> score_warnings(const ScoredRows& scored);
 
 /// Whether the model beats the climatology, in words: "no skill: ..." where it does not. Empty where nothing was

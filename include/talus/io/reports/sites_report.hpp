@@ -47,6 +47,9 @@ struct SitesRecord : FitRecord {
 /// @param how  trials, seed, first trial, threads
 void open_holdout(std::span<const Site> sites, SitesRecord& record, const ObserveOptions& how);
 
+/// What a reader must know besides the scores: what could not be cross-validated, and folds that split groups.
+std::vector<std::string> sites_warnings(const SitesRecord& record);
+
 /// The text of diagnosis.json, of report.html, and of the summary on the terminal. docs/several-campaigns.md.
 std::string sites_json(const SitesRecord& record);
 std::string sites_page(const SitesRecord& record);
