@@ -6,6 +6,7 @@ import math
 import os
 import unittest
 import warnings
+from xml.etree import ElementTree
 
 from support import NORTH, WEST, Case
 
@@ -138,12 +139,24 @@ class OwnCampaign(Case):
         self.assertTrue(0 <= kappa["ci95"][0] <= kappa["ci95"][1] <= 3, kappa)
         self.assertEqual(record["start_model"], start)
 
+    def assert_ranks_are_drawn(self, coverage):
+        """ranks.svg has a histogram for each observable, with bars as high as its ranks."""
+        svg = "{http://www.w3.org/2000/svg}"
+        drawn = ElementTree.parse(self.path("fit/ranks.svg")).getroot().findall(svg + "svg")
+        expected = coverage["after"]["fit"] + coverage["after"]["holdout"]
+        self.assertEqual([h.find(svg + "text").text for h in drawn], [c["observable"] for c in expected])
+        for histogram, observable in zip(drawn, expected):
+            heights = [float(bar.get("height")) for bar in histogram.findall(svg + "rect")[1:]]
+            unit = sum(heights) / sum(observable["ranks"])
+            for height, rank in zip(heights, observable["ranks"], strict=True):
+                self.assertAlmostEqual(height, unit * rank, delta=0.15)
+
     def test_calibrate_lowers_the_error_and_writes_a_model_that_runs(self):
         before = os.listdir(self.folder)
         done = self.run_well("calibrate", self.campaign, "-o", self.path("fit"), "--fit", "theta_scale,En50", "--starts",
                              "2", "--trials", "20")
         self.assertIn("held-out rows (15 blocks)", done.stdout)
-        self.assertEqual(sorted(os.listdir(self.path("fit"))), ["calibration.json", "fitted.toml", "report.md"])
+        self.assertEqual(sorted(os.listdir(self.path("fit"))), ["calibration.json", "fitted.toml", "ranks.svg", "report.md"])
         self.assertEqual(sorted(os.listdir(self.folder)), sorted(before + ["fit"]))
         result = self.read_json("fit/calibration.json")
         error = result["error"]
@@ -158,8 +171,9 @@ class OwnCampaign(Case):
         self.assertLess(abs(math.log(theta["value"] / 0.3)), 0.5)
         self.assertEqual(len(result["correlation"]), 2)
         report = self.read_text("fit/report.md")
-        for word in ("95 % interval", "Held-out rows", "runout", "speed S1", "Crossed S1", "climatology", "below P95", "Run-out beyond"):
+        for word in ("95 % interval", "Held-out rows", "runout", "speed S1", "Crossed S1", "climatology", "below P95", "Run-out beyond", "`ranks.svg`"):
             self.assertIn(word, report)
+        self.assert_ranks_are_drawn(result["coverage"])
 
         scored = self.run_well("score", self.campaign, "--parameters", self.path("fit/fitted.toml"), "--json")
         self.assertLess(json.loads(scored.stdout)["fit"]["score"], error["fit"]["before"])

@@ -97,6 +97,8 @@ int calibrate(const Options& options) {
 
   talus::io::write_text(folder.temporary() / "calibration.json", talus::io::calibration_json(c));
   talus::io::write_text(folder.temporary() / "report.md", talus::io::calibration_report(c));
+  if (const std::string ranks = talus::io::ranks_picture(c.errors); !ranks.empty())
+    talus::io::write_text(folder.temporary() / "ranks.svg", ranks);
   talus::io::write_text(folder.temporary() / "fitted.toml",
                         talus::io::model_text(c.fit.model, opened.loaded,
                                               "Fitted by talus calibrate to the campaign " + campaign.name +

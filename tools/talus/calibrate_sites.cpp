@@ -109,6 +109,9 @@ int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how
                       "Fitted by talus calibrate to the campaigns " + c.campaign +
                           ", shared: " + (share.empty() ? "nothing" : talus::joined(share)) +
                           ".\nUncertainty, and what is not identifiable: report.md of the folder above.");
+  for (const talus::io::SiteEvidence& site : c.evidence)
+    if (const std::string ranks = talus::io::ranks_picture(site.errors); !ranks.empty())
+      talus::io::write_text(opened.folder.temporary() / site.site / "ranks.svg", ranks);
   opened.folder.commit();
   progress.finish();
   if (!command.quiet)

@@ -9,6 +9,7 @@ namespace talus::io {
 namespace {
 
 constexpr int kHistogramWidth = 210, kHistogramHeight = 130, kHistogramMargin = 26;  // of a histogram [px]
+constexpr int kHistogramsInRow = 4, kHeadingHeight = 30;                             // of a picture [px]
 
 std::string whole_percent(double share) {
   return with_decimals(100.0 * share, 0);
@@ -39,7 +40,8 @@ void for_rows(const std::vector<Coverage>& list, Row row) {
   }
 }
 
-Markup histogram(const Coverage& c) {
+/// @param left, top  its place in a picture [px]
+Markup histogram(const Coverage& c, int left = 0, int top = 0) {
   const Interval& expected = c.expected_in_class;
   const double highest = std::max<double>(*std::ranges::max_element(c.ranks), expected.high);
   const Axis x{0.0, kRankClasses, kHistogramMargin, kHistogramWidth - 2 * kHistogramMargin};
@@ -63,7 +65,8 @@ Markup histogram(const Coverage& c) {
   svg.words({{"x", kHistogramWidth - kHistogramMargin}, {"y", kHistogramHeight - 10}, {"text-anchor", "end"}},
             "farther, more");
   const std::string width = std::to_string(kHistogramWidth), height = std::to_string(kHistogramHeight);
-  return svg.drawing({{"width", width}, {"height", height}, {"viewBox", "0 0 " + width + " " + height}});
+  return svg.drawing(
+      {{"x", left}, {"y", top}, {"width", width}, {"height", height}, {"viewBox", "0 0 " + width + " " + height}});
 }
 
 /// What a wrong share says of the model.
@@ -141,6 +144,34 @@ Markup rank_histograms(const std::vector<Coverage>& list) {
   Markup html = "<p>"_html;
   for (const Coverage& c : list) html += histogram(c);
   return html + "</p>\n";
+}
+
+std::string ranks_picture(std::span<const BeforeAfter> errors) {
+  Svg headings;
+  Markup histograms;
+  int top = 0;
+  for (const BeforeAfter& e : errors) {
+    if (e.after.coverage.empty()) continue;
+    headings.words({{"x", kHistogramMargin}, {"y", top + 20}, {"font-weight", "bold"}},
+                   rows_in_words(e.after.rows) +
+                       " rows: blocks by the rank of what was measured among the simulated; "
+                       "grey: 95 % of right models");
+    top += kHeadingHeight;
+    int column = 0;
+    for (const Coverage& c : e.after.coverage) {
+      histograms +=
+          histogram(c, column % kHistogramsInRow * kHistogramWidth, top + column / kHistogramsInRow * kHistogramHeight);
+      ++column;
+    }
+    top += (column + kHistogramsInRow - 1) / kHistogramsInRow * kHistogramHeight;
+  }
+  if (histograms.empty()) return {};
+  return headings
+      .drawing(
+          {{"xmlns", "http://www.w3.org/2000/svg"}, {"width", kHistogramsInRow * kHistogramWidth}, {"height", top}},
+          "<style>text{font:11px sans-serif}</style><rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"_html +
+              histograms)
+      .text();
 }
 
 std::vector<std::string> coverage_warnings(const ScoredRows& scored) {

@@ -98,6 +98,7 @@ Json evidence_json(std::span<const BeforeAfter> errors, std::span<const std::uin
 
 std::string tail_before_after(const BeforeAfter& e) {
   if (e.after.tail.groups.empty()) return {};
+  if (hardly_simulated(e.after.tail)) return tail_sentence(e.after) + ".";
   return "Run-out beyond " + with_digits(e.after.tail_begin, 3) + " m, " + rows_in_words(e.after.rows) +
          " rows: error " + score_text(e.before.tail.total) + " before, " + score_text(e.after.tail.total) +
          " after (lower by " + tenths_of_percent(e.tail_reduction.share) +
@@ -116,7 +117,7 @@ std::string gain_text(double gain, const Interval& interval) {
          ")";
 }
 
-std::string judgement_markdown(const BeforeAfter& e) {
+std::string judgement_markdown(const BeforeAfter& e, const std::string& ranks) {
   std::string text;
   for (const std::string& sentence : {skill_sentence(e.after), tail_before_after(e)})
     if (!sentence.empty()) text += sentence + (sentence.ends_with('.') ? "" : ".") + "\n\n";
@@ -124,9 +125,8 @@ std::string judgement_markdown(const BeforeAfter& e) {
   if (e.after.coverage.empty()) return text;
   return text +
          "Measured values below the simulated P5, P50 and P95, after the fit (in brackets 95 % of right models; *: "
-         "hardly "
-         "a right model):\n\n" +
-         coverage_markdown(e.after.coverage) + "\n";
+         "hardly a right model); the ranks are drawn in `" +
+         ranks + "`:\n\n" + coverage_markdown(e.after.coverage) + "\n";
 }
 
 Markup groups_html(const BeforeAfter& e) {

@@ -40,7 +40,8 @@ std::string score_text(double score);
 /// A gain with its 95 % interval; empty where it is NaN.
 std::string gain_text(double gain, const Interval& interval);
 /// Skill, tail and spread after a fit, as Markdown.
-std::string judgement_markdown(const BeforeAfter& error);
+/// @param ranks  file with the histograms of ranks (`ranks_picture`)
+std::string judgement_markdown(const BeforeAfter& error, const std::string& ranks);
 /// The error in the far run-outs before and after in a sentence. Empty where it was not scored.
 std::string tail_before_after(const BeforeAfter& error);
 /// Error by group as an HTML table: before, after, climatology, rows.

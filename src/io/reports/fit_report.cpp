@@ -136,7 +136,7 @@ std::string error_lines(const Calibration& c) {
             std::to_string(e.after.score.rows.size()) + " |\n\n";
     text += "The fit lowers the error by " + with_decimals(100.0 * e.reduction.share, 1) +
             " % (95 % interval over the blocks: " + with_decimals(100.0 * e.reduction.interval.low, 1) + " to " +
-            with_decimals(100.0 * e.reduction.interval.high, 1) + " %).\n\n" + judgement_markdown(e);
+            with_decimals(100.0 * e.reduction.interval.high, 1) + " %).\n\n" + judgement_markdown(e, "ranks.svg");
   }
   return text;
 }

@@ -70,11 +70,6 @@ double unseen_share(const Score& score) {
   return score.groups.empty() ? 0.0 : share / static_cast<double>(score.groups.size());
 }
 
-/// A score is hardly the model's own if the model seldom simulates what was measured.
-bool hardly_simulated(const Score& score) {
-  return unseen_share(score) > 0.5;
-}
-
 /// Skill against the climatology; NaN for a model that hardly simulates what was measured.
 Reduction skill_of(const Score& score, const Score& climatology, std::span<const std::uint32_t> clusters) {
   if (score.rows.empty() || hardly_simulated(score)) return {};
@@ -91,6 +86,10 @@ std::size_t blocks_that_leave(const Campaign& campaign, std::span<const BlockRun
 }
 
 }  // namespace
+
+bool hardly_simulated(const Score& score) {
+  return unseen_share(score) > 0.5;
+}
 
 std::string rows_in_words(const std::string& rows) {
   return rows == "fit" ? "fitting" : rows == "holdout" ? "held-out" : rows;

@@ -78,7 +78,8 @@ std::string sites_calibration_report(const SitesCalibration& c) {
             " to " + with_digits(p.interval.high, 3) + " | " + interval_note(p.identifiable, p.at_bound) + " |\n";
   text += "\n## Error, by site and pooled\n\n" + evidence_markdown(c.evidence) + "\n";
   for (std::size_t i = 0; i + 1 < c.evidence.size(); ++i)
-    text += "## " + c.evidence[i].site + ", fitting rows\n\n" + judgement_markdown(c.evidence[i].errors.front());
+    text += "## " + c.evidence[i].site + ", fitting rows\n\n" +
+            judgement_markdown(c.evidence[i].errors.front(), c.evidence[i].site + "/ranks.svg");
   for (const std::string& warning : c.warnings) text += "\nWarning: " + warning + "\n";
   return markdown_without_html(text);
 }

@@ -39,6 +39,10 @@ struct BeforeAfter {
   UsedClusters clusters;  ///< that the intervals rest on
 };
 
+/// Whether more than half of a score is of rows that score as the climatology, as the model seldom simulates what was
+/// measured: it says little of the model.
+bool hardly_simulated(const Score& score);
+
 /// "fitting", "held-out" or "out-of-fold", for "fit", "holdout" and "out-of-fold".
 std::string rows_in_words(const std::string& rows);
 
@@ -76,6 +80,9 @@ std::string tail_sentence(const ScoredRows& scored);
 
 /// Both, and the counts of the spread, as lines for the terminal.
 std::string judgement_lines(const ScoredRows& scored);
+
+/// Drawing (SVG) of the histograms of ranks after a fit, by kind of rows. Empty where nothing was counted.
+std::string ranks_picture(std::span<const BeforeAfter> errors);
 
 /// A line for a fit of which a share of the trajectories did not end within so many vertices.
 std::string cut_short_line(double share, std::uint32_t most_vertices);
