@@ -169,7 +169,7 @@ std::string ranks_picture(std::span<const BeforeAfter> errors) {
   return headings
       .drawing(
           {{"xmlns", "http://www.w3.org/2000/svg"}, {"width", kHistogramsInRow * kHistogramWidth}, {"height", top}},
-          "<style>text{font:11px sans-serif}</style><rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"_html +
+          "<style>text{font-family:sans-serif;font-size:11px}</style><rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"_html +
               histograms)
       .text();
 }
