@@ -125,6 +125,17 @@ class Design(Case):
         self.assertEqual(note, f"one design for the whole line is too low: h_i ({whole} m) on 25.0-50.0 m, which need up to {highest} m."
                          f" Give each stretch its own design, or the whole line SEL {sel} kJ and h_i {highest} m")
 
+    def test_crossings_up_to_an_end_of_the_line_are_said(self):
+        """The line is 100 m, a cell 5 m: crossings within a cell of an end go on beyond it, as far as the 99 % tell."""
+        for first, last, ends in ((10.0, 30.0, None), (4.0, 60.0, "the beginning"), (40.0, 96.0, "the end"), (1.0, 99.0, "both ends"),
+                                  (5.5, 94.5, None)):
+            self.rows = [(0, i, "road", 10.0, 1.0, 3000.0, first + (last - first) * i / 100) for i in range(101)]
+            self.save()
+            notes = [note for note in self.design("--containment", "100")[1]["notes"] if note.startswith("blocks cross up to")]
+            self.assertEqual(len(notes), ends is not None, (first, last, notes))
+            if ends:
+                self.assertTrue(notes[0].startswith(f"blocks cross up to {ends} of the line, and so probably beyond"), notes)
+
     def test_the_coefficient_is_pointed_out(self):
         """A lower c raises energies (docs/barrier.md): notes of runs above c = 0.15."""
         for c, said in ((0.5, True), (0.25, True), (0.2, True), (0.15, False), (0.125, False)):

@@ -727,6 +727,20 @@ class Hazard(Case):
         self.run_well("hazard", self.path("out"), "--overwrite", "--width", "20", "-q", "--threads", "1")
         self.assertTrue((bands_of(self.path("out/annual_frequency.tif"))[0] == value).all())
 
+    def test_widths_in_centimetres_and_an_old_report_are_said(self):
+        self.simulate()
+        line = f'"LINESTRING ({WEST + 20} {SOUTH + 100}, {WEST + 280} {SOUTH + 100})"'
+        self.write("road.csv", f"wkt,name,width,fid\n{line},narrow,100,1\n{line},wide,700,2\n")
+        first = self.run_well("hazard", self.path("out"), "--objects", self.path("road.csv"), "--width", "100")
+        self.assertEqual(first.stderr.count("wider than any road: must be in metres"), 1)
+        self.assertIn("width = 700 m, wider than any road", first.stderr)
+        self.assertNotIn("--width 100:", first.stderr)
+        self.assertNotIn("report.html", first.stderr)
+        self.run_well("report", self.path("out"))
+        second = self.run_well("hazard", self.path("out"), "--width", "101", "--overwrite")
+        self.assertIn("warning: --width 101: an object as wide is hit by what passes anywhere near", second.stderr)
+        self.assertIn("warning: report.html shows the results that were here before: talus report ", second.stderr)
+
     def test_rare_blocks_in_several_rounds(self):
         """A source of 1e-5 events per year beside one of 1000: where only its blocks pass, an object of 1 m (less than a cell) is hit
         w (W + D) times the length of their paths over the area, which passage_density.tif has; in any number of rounds."""

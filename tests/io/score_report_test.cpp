@@ -67,7 +67,7 @@ TEST(TailSentence, IsNotOfAModelThatHardlySimulates) {
   rows.tail.groups[0].unseen = 6;
   EXPECT_NE(tail_sentence(rows).find("0.500 against"), std::string::npos) << "a half of twelve rows is told";
   rows.tail.groups[0].unseen = 7;
-  EXPECT_EQ(tail_sentence(rows), "held-out rows: run-out beyond 56 m: cannot be told: few trials come to rest");
+  EXPECT_EQ(tail_sentence(rows), "held-out rows: run-out beyond 56 m: cannot be told: too few simulated values");
 }
 
 TEST(ScoreWarnings, OfBlocksThatCameToRestButLeaveInTheModel) {
@@ -77,7 +77,8 @@ TEST(ScoreWarnings, OfBlocksThatCameToRestButLeaveInTheModel) {
   EXPECT_TRUE(score_warnings(rows).empty());
   rows.leaving = 3;
   ASSERT_EQ(score_warnings(rows).size(), 1U);
-  EXPECT_EQ(score_warnings(rows)[0].find("most trials of 3 of 24 fitting blocks leave the DEM"), 0U);
+  EXPECT_EQ(score_warnings(rows)[0].find("more than a quarter of the trials leave the DEM of 3 of 24 fitting blocks"),
+            0U);
 }
 
 }  // namespace

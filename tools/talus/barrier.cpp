@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include "commands.hpp"
@@ -286,10 +287,25 @@ class Exceedances {
   talus::BootstrapOptions how_;
 };
 
+/// Crossings up to an end of the line: the path of the blocks goes on beyond it.
+std::optional<std::string> end_note(const talus::io::BarrierWidth& width, double length) {
+  const talus::Stretch& s = width.shortest;
+  const bool begin = s.from<width.bin, end = s.to> length - width.bin;
+  if (!begin && !end) return std::nullopt;
+  return "blocks cross up to " +
+         std::string(begin && end ? "both ends"
+                     : begin      ? "the beginning"
+                                  : "the end") +
+         " of the line, and so probably beyond: width and values hold for the line as it was drawn only (unsafe); draw "
+         "a longer one and run again";
+}
+
 void add_stretches(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
                    const talus::DesignBlockRule& rule, const RunSummary& run, const Options& o) {
   std::vector<double> parts;
   for (const auto& line : screen_of(run, o).lines) parts.push_back(talus::length_of(line));
+  if (const auto note = end_note(*report.width, std::accumulate(parts.begin(), parts.end(), 0.0)))
+    report.notes.push_back(*note);
   for (const talus::StretchDesign& s :
        talus::design_stretches(crossings, talus::stretch_edges(parts, o.stretch), rule, report.factors))
     report.stretches.push_back({s, {}});
@@ -368,7 +384,9 @@ int design(Options o) {
   const auto replaced = talus::io::write_barrier(o.folder, name, report, screen_of(run, o), run.crs_wkt);
   if (!run.of_profile) refresh_project(o.folder);  // a profile has no maps
   if (replaced && !o.quiet) say("", *replaced);
-  if (!o.quiet) print_text(talus::io::barrier_text(report));
+  if (o.quiet) return 0;
+  say_old_report(o.folder);
+  print_text(talus::io::barrier_text(report));
   return 0;
 }
 

@@ -165,6 +165,7 @@ void add_calibrate(CLI::App& app, Action& action) {
       "Example:\n  talus calibrate campaign.toml -o result\n"
       "  talus calibrate a/campaign.toml b/campaign.toml --fit En50,phi --share phi -o result\n\n"
       "--fit takes numbers of effects, too: --fit theta_scale,effects.rest-in-roughness.kappa\n"
-      "OUT: fitted.toml (the model: for talus score, and to include in a scenario), report.md, calibration.json.");
+      "OUT: fitted.toml (the model: for talus score, and to include in a scenario), report.md, ranks.svg, "
+      "calibration.json.");
   command->callback([&action, options] { action = [options] { return calibrate(*options); }; });
 }

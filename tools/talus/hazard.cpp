@@ -209,6 +209,10 @@ int hazard(const Options& options) {
                                                 : reweighted_survey(options, file, progress, record);
   record.cells = survey->cells();
   if (record.width == 0.0) record.warnings = warnings_of(record.matrix, record.header.rules);
+  if (record.width > talus::io::kWidest)
+    record.warnings.push_back("--width " + talus::text_of(record.width) +
+                              ": an object as wide is hit by what passes anywhere near; the width of a house or road "
+                              "in metres is meant");
   for (const std::string& warning : warnings_of(record.header)) record.warnings.push_back(warning);
   if (const std::string warning = warning_of_objects(options, record.header); !warning.empty())
     record.warnings.push_back(warning);
@@ -235,6 +239,7 @@ int hazard(const Options& options) {
     say("", "removed, as not asked for this time: " + talus::joined(removed) +
                 " (of the earlier talus hazard in this folder)");
   for (const std::string& warning : record.warnings) say("warning", warning);
+  say_old_report(folder);
   for (const std::string& object : objects) say("", object);
   say("", object_text(record) + ": " + count_text(record.cells) + " cells that something passes, " +
               talus::with_digits(record.header.rules.scale.total, 4) + " events per year; results are in " +

@@ -1,6 +1,7 @@
 #include "project.hpp"
 
 #include "commands.hpp"
+#include "talus/base/shell.hpp"
 #include "talus/io/results/qgis_project.hpp"
 
 void refresh_project(const std::filesystem::path& folder) {
@@ -11,4 +12,11 @@ void refresh_project(const std::filesystem::path& folder) {
   } catch (const std::exception& error) {
     say("warning", std::string(talus::io::kProjectFile) + " is as it was before: " + error.what());
   }
+}
+
+void say_old_report(const std::filesystem::path& folder) {
+  std::error_code none;
+  if (std::filesystem::exists(folder / "report.html", none))
+    say("warning", "report.html shows the results that were here before: talus report " +
+                       talus::shell_word(folder.string()) + " --overwrite makes it anew");
 }

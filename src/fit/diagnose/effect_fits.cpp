@@ -100,13 +100,6 @@ FittedModel EffectFits::fitted_model(Fit&& fit, std::vector<Parameter> free) con
 
 FittedModel EffectFits::fit_ground(const Model& start, bool brief) const {
   const Timesheet::Phase phase(times_, "ground");
-  FittedModel fitted = fit_ground_from(start, brief);
-  if (fitted.z.cwiseAbs().maxCoeff() <= options_.rules.far) return fitted;
-  FittedModel again = fit_ground_from(fitted.model, brief);
-  return again.objective.total < fitted.objective.total ? again : fitted;
-}
-
-FittedModel EffectFits::fit_ground_from(const Model& start, bool brief) const {
   const std::vector<BlockRuns> runs = observe(campaign_, start, observe_options(options_.trials.search));
   std::vector<Parameter> free = ground_parameters(campaign_, start, options_.keys, touched_zones(campaign_, runs));
   FitOptions how = fit_options();  // all that follows rests on this fit

@@ -23,8 +23,7 @@ class EffectFits {
   /// Simulates and scores a fit again, with the random numbers of this round.
   FittedModel simulated_anew(FittedModel fitted) const;
   /// The ground alone, fitted as `calibrate` does, then for some rounds more: what this fit misses looks like an
-  /// effect. Where it ends far from its start, it is fitted again from there, with the prior around it: a prior that is
-  /// a wrong guess holds a fit back.
+  /// effect.
   ///
   /// @param brief  with as many trials as other fits, not twice as many
   FittedModel fit_ground(const Model& start, bool brief = false) const;
@@ -62,7 +61,6 @@ class EffectFits {
   Timesheet& times() const { return times_; }
 
  private:
-  FittedModel fit_ground_from(const Model& start, bool brief) const;
   ObserveOptions observe_options(std::uint32_t trials) const;
   FitOptions fit_options() const;
   FitOptions continued_fit_options(const FittedModel& fitted) const;

@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Names of the files that `calibrate` and `diagnose` write, also into the folders of several campaigns.
-constexpr std::array<std::string_view, 6> kFitFiles{"calibration.json", "diagnosis.json", "report.md",
-                                                    "report.html",      "fitted.toml",    "with_effect.toml"};
+constexpr std::array<std::string_view, 7> kFitFiles{"calibration.json", "diagnosis.json",   "report.md", "report.html",
+                                                    "fitted.toml",      "with_effect.toml", "ranks.svg"};
 
 /// Beginnings of the names of the files of a part.
 constexpr std::array<std::string_view, 4> kPartFiles{"tally-", "reach-", "rest-", "rows-"};

@@ -123,7 +123,7 @@ void Layer::choose_layer() {
   const bool asked = !wanted.layer.empty() || wanted.number >= 0;
   if (!asked && names.size() > 1 && names != kOfSources)
     throw InputError(
-        wanted.file + ": has the layers " + joined(names) + ", must be told which: " +
+        wanted.file + ": has the layers " + joined(names) + ", must be told which, such as " +
         shell_word(std::filesystem::path(wanted.file).filename().string() + "|layername=" + names.front()));
   const auto found = asked ? std::ranges::find(names, given) : names.begin();
   if (found == names.end()) throw InputError(path_ + ": has no such layer with geometry" + known_names(given, names));

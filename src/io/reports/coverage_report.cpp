@@ -154,8 +154,8 @@ std::string ranks_picture(std::span<const BeforeAfter> errors) {
     if (e.after.coverage.empty()) continue;
     headings.words({{"x", kHistogramMargin}, {"y", top + 20}, {"font-weight", "bold"}},
                    rows_in_words(e.after.rows) +
-                       " rows: blocks by the rank of what was measured among the simulated; "
-                       "grey: 95 % of right models");
+                       " rows, after the fit: blocks by the rank of what was measured among the simulated; "
+                       "grey: 95 % of the bars of a right model");
     top += kHeadingHeight;
     int column = 0;
     for (const Coverage& c : e.after.coverage) {

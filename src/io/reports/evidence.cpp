@@ -98,7 +98,7 @@ Json evidence_json(std::span<const BeforeAfter> errors, std::span<const std::uin
 
 std::string tail_before_after(const BeforeAfter& e) {
   if (e.after.tail.groups.empty()) return {};
-  if (hardly_simulated(e.after.tail)) return tail_sentence(e.after) + ".";
+  if (hardly_simulated(e.before.tail) || hardly_simulated(e.after.tail)) return tail_sentence(e.after) + ".";
   return "Run-out beyond " + with_digits(e.after.tail_begin, 3) + " m, " + rows_in_words(e.after.rows) +
          " rows: error " + score_text(e.before.tail.total) + " before, " + score_text(e.after.tail.total) +
          " after (lower by " + tenths_of_percent(e.tail_reduction.share) +

@@ -87,7 +87,7 @@ std::string box_of(const MapScale& scale, bool with_legend) {
 
 std::string sentence_of(const ReportMap& map, const MapSheet& sheet) {
   const std::string cells = std::to_string(sheet.window.side);
-  std::string text = map.title + unit_words(map) + ", file " + map.name + ".tif";
+  std::string text = map.title + unit_words(map) + ", file " + map.file;
   if (sheet.window.side > 1)
     text += "; each pixel shows the " + std::string(map.smallest ? "smallest" : "largest") + " value of its " + cells +
             " x " + cells + " cells";

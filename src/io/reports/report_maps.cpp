@@ -138,6 +138,7 @@ void add_map(const fs::path& folder, const std::string& name, const Shown& shown
   const MapRaster raster(file.string(), style->band);
   check_grid(file, raster, run.grid);
   ReportMap map{name, title_of(name, shown, raster.band_name()), shortened(raster.unit(), 20), *style, {}, {}};
+  map.file = name + ".tif";
   map.in_print = shown.in_print;
   map.smallest = name.starts_with("return_period_");
   map.classes_only = name == "hazard_class";
@@ -171,6 +172,7 @@ void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet)
     return;
   }
   ReportMap map{"hazard_class_undecided", "Class not decided", "1", {}, {}, {}};
+  map.file = "hazard_class.tif, band \"undecided\"";
   map.style = {
       undecided.band(), true, {{0.0, "decided", {200, 200, 200}}, {1.0, "not decided by so few blocks", {213, 94, 0}}}};
   map.classes_only = true;

@@ -27,6 +27,7 @@ struct ReportMap {
   bool in_print = false;      ///< has a figure of its own
   bool smallest = false;      ///< a pixel holds the smallest value of its cells, else the largest
   bool classes_only = false;  ///< the values are classes with names
+  std::string file = {};      ///< with the band where it is not the first
 };
 
 /// The part of the terrain that all maps of a page show.

@@ -183,7 +183,8 @@ Markup objects_html(const ObjectsPart& part, bool pieces) {
     return part.note.empty() ? Markup() : "<h2>Objects</h2>\n"_html + note;
   Markup html =
       "<h2>Objects</h2>\n<p>How often each object is hit, with 95 % bounds of the number of blocks. \"No event\": no "
-      "block of this run did it; the upper bound says how often it may happen all the same.</p>\n"_html;
+      "block of this run did it; it may happen all the same, as often as the upper bound: that of the hits is in "
+      "brackets, those above an energy are in objects.csv.</p>\n"_html;
   if (pieces) html += "<p>Blocks broke, and "_html + kHitsOfPieces + ".</p>\n";
   html += "<div class='wide'><table><tr><th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
   for (const std::string& energy : part.thresholds) html += "<th>above "_html + energy + " kJ once in [years]</th>";

@@ -76,11 +76,12 @@ Reduction skill_of(const Score& score, const Score& climatology, std::span<const
   return reduction(climatology, score, clusters);
 }
 
-/// Number of blocks that were measured at rest, of which most simulated trials leave the DEM.
+/// Number of blocks that were measured at rest, of which more than a quarter of the simulated trials leave the DEM. A
+/// fit holds them back only from a half on, so that it may end below it.
 std::size_t blocks_that_leave(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
   std::size_t leaving = 0;
   for (std::size_t b = 0; b < runs.size(); ++b)
-    if (ask[b] && campaign.blocks[b].stop && 2 * runs[b].ends[static_cast<std::size_t>(End::Left)] > runs[b].trials)
+    if (ask[b] && campaign.blocks[b].stop && 4 * runs[b].ends[static_cast<std::size_t>(End::Left)] > runs[b].trials)
       ++leaving;
   return leaving;
 }
@@ -161,7 +162,7 @@ std::string skill_sentence(const ScoredRows& s) {
 std::string tail_sentence(const ScoredRows& s) {
   if (s.tail.groups.empty()) return {};
   const std::string beyond = rows_in_words(s.rows) + " rows: run-out beyond " + with_digits(s.tail_begin, 3) + " m: ";
-  if (hardly_simulated(s.tail)) return beyond + "cannot be told: few trials come to rest";
+  if (hardly_simulated(s.tail)) return beyond + "cannot be told: too few simulated values";
   return beyond + with_decimals(s.tail.total, 3) + " against the climatology's " +
          with_decimals(s.tail_climatology.total, 3) + (s.tail.total < s.tail_climatology.total ? "" : ": no skill");
 }
@@ -175,10 +176,11 @@ std::vector<std::string> score_warnings(const ScoredRows& s) {
                          " simulated values and score as the climatology: the model seldom does there what was "
                          "measured, and the score says nothing of it (more trials may help)");
   if (s.leaving > 0)
-    warnings.push_back("most trials of " + std::to_string(s.leaving) + " of " + std::to_string(s.blocks) + " " +
-                       rows_in_words(s.rows) +
-                       " blocks leave the DEM, though these came to rest on it: the DEM is too small (a fit then makes "
-                       "run-outs too short), take a larger one; or the ground lets blocks go too far");
+    warnings.push_back("more than a quarter of the trials leave the DEM of " + std::to_string(s.leaving) + " of " +
+                       std::to_string(s.blocks) + " " + rows_in_words(s.rows) +
+                       " blocks, though these came to rest on it: the ground lets blocks go too far, or the DEM is too "
+                       "small or has gaps there" +
+                       (s.deposits ? "" : " (a fit then makes run-outs too short)"));
   for (std::string& warning : coverage_warnings(s)) warnings.push_back(std::move(warning));
   return warnings;
 }

@@ -215,6 +215,9 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     std::optional<double> width;
     if (!parts.lines.empty()) {
       width = layer.number(*feature, width_field, "width", kWidth);
+      if (width.value_or(0.0) > kWidest)
+        state_->warnings.push_back(layer.label(*feature) + ": width = " + text_of(*width) +
+                                   " m, wider than any road: must be in metres");
       (width ? state_->lines_of_their_width : state_->lines_of_given_width) += 1;
     } else if (!layer.text(*feature, width_field).empty()) {
       ++state_->polygons_with_width;
@@ -408,7 +411,7 @@ std::string ObjectLayer::not_copied_text(const HazardRules& rules, const std::ve
   std::vector<std::string> left_out;
   for (int i = 0; i < model.GetFieldCount(); ++i) {
     const std::string name = model.GetFieldDefnRef(i)->GetNameRef();
-    if (std::ranges::count(copied, i) == 0) left_out.push_back(name);
+    if (std::ranges::count(copied, i) == 0 && lowercase(name) != "fid") left_out.push_back(name);  // fid: the row
   }
   if (left_out.empty()) return {};
   return state_->file + ": fields named as columns of the results are not copied into objects.gpkg and objects.csv: " +

@@ -58,9 +58,6 @@ struct DiagnosisRules {
   int further_screens = 12;
 
   // The fits
-  /// Distance of a fitted parameter of the ground from its start beyond which the ground is fitted again from there
-  /// [z]: with a right prior one parameter in eight is farther.
-  double far = 1.5;
   /// Gain by which a round of the quadratic model must lower the objective for another one [objective].
   double worth_a_round = 0.002;
   /// Gain that one more fitted number must bring, times the number of fitting blocks [objective]. Akaike's price, one

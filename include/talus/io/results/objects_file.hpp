@@ -10,6 +10,9 @@
 
 namespace talus::io {
 
+/// Width of an object above which it is asked whether it is in metres [m]: no house and no road is as wide.
+inline constexpr double kWidest = 100.0;
+
 /// Polygons and lines of a vector file with their attributes, in local metres.
 class ObjectLayer {
  public:

@@ -68,25 +68,6 @@ struct SlopeFits {
   DiagnoseOptions options;
 };
 
-/// The prior is a guess: where it is wrong by two standard deviations it holds a fit to few blocks back.
-TEST(EffectFits, AGroundFarFromItsStartIsFittedAgainFromThere) {
-  SlopeFits slope(15);
-  Model far = model_of_slope();
-  for (auto& ground : far.grounds) ground.theta_scale *= std::exp(2.2);
-  const auto fitted = [&](const Model& start) {
-    return EffectFits(slope.campaign, slope.options, slope.rows, [](double) { return true; }).fit_ground(start);
-  };
-  const double truth = model_of_slope().grounds[0].theta_scale;
-  const auto error = [truth](const FittedModel& fit) { return std::abs(std::log(fit.free[0].get(fit.model) / truth)); };
-  const FittedModel twice = fitted(far);
-  slope.options.rules.far = 10.0;  // never
-  const FittedModel once = fitted(far);
-  EXPECT_EQ(once.free[0].centre, far.grounds[0].theta_scale);
-  EXPECT_EQ(twice.free[0].centre, once.free[0].get(once.model));
-  EXPECT_LT(twice.objective.total, once.objective.total);
-  EXPECT_LT(error(twice), 0.5 * error(once));
-}
-
 TEST(EffectFits, WhatIsNoBetterIsNotConfirmed) {
   const SlopeFits slope(45);
   const Campaign& campaign = slope.campaign;
