@@ -10,8 +10,8 @@ import unittest
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import (TALUS, Case, bands_of, box, heights, log_left_by_a_viewer, rows_of, sqlite_rows, write_dem,
-                     write_features)
+from support import (NORTH, TALUS, WEST, Case, bands_of, box, heights, log_left_by_a_viewer, rows_of, sqlite_rows,
+                     write_dem, write_features)
 
 RUN = """dem = "dem.tif"
 trajectories = 200
@@ -729,7 +729,7 @@ class Hazard(Case):
 
     def test_widths_in_centimetres_and_an_old_report_are_said(self):
         self.simulate()
-        line = f'"LINESTRING ({WEST + 20} {SOUTH + 100}, {WEST + 280} {SOUTH + 100})"'
+        line = f'"LINESTRING ({WEST + 20} {NORTH - 200}, {WEST + 280} {NORTH - 200})"'
         self.write("road.csv", f"wkt,name,width,fid\n{line},narrow,100,1\n{line},wide,700,2\n")
         first = self.run_well("hazard", self.path("out"), "--objects", self.path("road.csv"), "--width", "100")
         self.assertEqual(first.stderr.count("wider than any road: must be in metres"), 1)
