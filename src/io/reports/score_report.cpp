@@ -113,11 +113,11 @@ ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<c
   out.tail_interval = score_intervals(out.tail, clusters).total;
   out.tail_climatology = tail_score_of_climatology(campaign, ask, folds);
   out.coverage = coverage(campaign, runs, ask);
-  out.leaving = blocks_that_leave(campaign, runs, ask);
   if (campaign.deposits != nullptr) {
     out.deposits = check_deposits(campaign, runs, ask);
     return out;
   }
+  out.leaving = blocks_that_leave(campaign, runs, ask);
   how.rule = ScoreRule::LogDensity;
   out.log_score = score(campaign, runs, ask, how);
   out.log_climatology = score_of_climatology(campaign, ask, how);
@@ -179,8 +179,7 @@ std::vector<std::string> score_warnings(const ScoredRows& s) {
     warnings.push_back("more than a quarter of the trials leave the DEM of " + std::to_string(s.leaving) + " of " +
                        std::to_string(s.blocks) + " " + rows_in_words(s.rows) +
                        " blocks, though these came to rest on it: the ground lets blocks go too far, or the DEM is too "
-                       "small or has gaps there" +
-                       (s.deposits ? "" : " (a fit then makes run-outs too short)"));
+                       "small or has gaps there (a fit then makes run-outs too short)");
   for (std::string& warning : coverage_warnings(s)) warnings.push_back(std::move(warning));
   return warnings;
 }

@@ -27,7 +27,8 @@ struct ScoredRows {
   std::vector<Coverage> coverage;
   Score log_score, log_climatology;      ///< minus log densities [nats]
   std::optional<DepositCheck> deposits;  ///< of blocks that were mapped where they lie
-  std::size_t leaving = 0;  ///< blocks measured at rest of which a quarter of the trials or more leave the DEM
+  std::size_t leaving =
+      0;  ///< blocks measured at rest of which more than a quarter of the trials leave the DEM; not of mapped ones
 };
 
 /// The score of the model before and after a fit, on rows of one kind.
