@@ -126,7 +126,7 @@ class Design(Case):
                          f" Give each stretch its own design, or the whole line SEL {sel} kJ and h_i {highest} m")
 
     def test_crossings_up_to_an_end_of_the_line_are_said(self):
-        """The line is 100 m, a cell 5 m: crossings within a cell of an end go on beyond it, as far as the 99 % tell."""
+        """The line is 100 m, a cell 5 m: crossings within a cell of an end go on beyond it."""
         for first, last, ends in ((10.0, 30.0, None), (4.0, 60.0, "the beginning"), (40.0, 96.0, "the end"), (1.0, 99.0, "both ends"),
                                   (5.5, 94.5, None)):
             self.rows = [(0, i, "road", 10.0, 1.0, 3000.0, first + (last - first) * i / 100) for i in range(101)]

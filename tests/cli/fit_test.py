@@ -145,6 +145,7 @@ class OwnCampaign(Case):
         drawn = ElementTree.parse(self.path("fit/ranks.svg")).getroot().findall(svg + "svg")
         expected = coverage["after"]["fit"] + coverage["after"]["holdout"]
         self.assertEqual([h.find(svg + "text").text for h in drawn], [c["observable"] for c in expected])
+        self.assertEqual(len({(h.get("x"), h.get("y")) for h in drawn}), len(drawn))  # none over another
         for histogram, observable in zip(drawn, expected):
             heights = [float(bar.get("height")) for bar in histogram.findall(svg + "rect")[1:]]
             unit = sum(heights) / sum(observable["ranks"])

@@ -40,7 +40,7 @@ TEST(InLargeGroups, NothingIsSaidOfSkillWhereNoGroupIsLarge) {
 }
 
 /// Rows that score as the climatology for want of simulated values are no skill of the model, whatever the figures are.
-/// What counts is their share of the score, in which a group of two rows weighs as much as one of twelve.
+/// A group of two rows weighs as much as one of twelve: the share of the score decides, not the number of rows.
 TEST(SkillSentence, IsNotOfAModelThatHardlySimulates) {
   ScoredRows rows;
   rows.rows = "fit";

@@ -287,15 +287,14 @@ class Exceedances {
   talus::BootstrapOptions how_;
 };
 
-/// Crossings up to an end of the line: the path of the blocks goes on beyond it.
+/// A note if the crossings reach an end of the line: the path of the blocks goes on beyond it.
 std::optional<std::string> end_note(const talus::io::BarrierWidth& width, double length) {
   const talus::Stretch& s = width.shortest;
-  const bool begin = s.from<width.bin, end = s.to> length - width.bin;
+  const bool begin = s.from < width.bin;
+  const bool end = length - s.to < width.bin;
   if (!begin && !end) return std::nullopt;
-  return "blocks cross up to " +
-         std::string(begin && end ? "both ends"
-                     : begin      ? "the beginning"
-                                  : "the end") +
+  const std::string ends = begin && end ? "both ends" : begin ? "the beginning" : "the end";
+  return "blocks cross up to " + ends +
          " of the line, and so probably beyond: width and values hold for the line as it was drawn only (unsafe); draw "
          "a longer one and run again";
 }

@@ -209,7 +209,7 @@ int hazard(const Options& options) {
                                                 : reweighted_survey(options, file, progress, record);
   record.cells = survey->cells();
   if (record.width == 0.0) record.warnings = warnings_of(record.matrix, record.header.rules);
-  if (record.width > talus::io::kWidest)
+  if (record.width > talus::io::kWidestObject)
     record.warnings.push_back("--width " + talus::text_of(record.width) +
                               ": an object as wide is hit by what passes anywhere near; the width of a house or road "
                               "in metres is meant");

@@ -146,7 +146,12 @@ Markup rank_histograms(const std::vector<Coverage>& list) {
   return html + "</p>\n";
 }
 
+bool has_ranks(std::span<const BeforeAfter> errors) {
+  return std::ranges::any_of(errors, [](const BeforeAfter& e) { return !e.after.coverage.empty(); });
+}
+
 std::string ranks_picture(std::span<const BeforeAfter> errors) {
+  if (!has_ranks(errors)) return {};
   Svg headings;
   Markup histograms;
   int top = 0;
@@ -165,7 +170,6 @@ std::string ranks_picture(std::span<const BeforeAfter> errors) {
     }
     top += (column + kHistogramsInRow - 1) / kHistogramsInRow * kHistogramHeight;
   }
-  if (histograms.empty()) return {};
   return headings
       .drawing(
           {{"xmlns", "http://www.w3.org/2000/svg"}, {"width", kHistogramsInRow * kHistogramWidth}, {"height", top}},

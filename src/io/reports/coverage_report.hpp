@@ -19,6 +19,8 @@ Json json_of(const std::vector<Coverage>& list);
 Markup coverage_html(const std::vector<Coverage>& list);
 /// Warnings, one for each share that a right model does not give.
 std::vector<std::string> coverage_warnings(const ScoredRows& scored);
+/// Whether ranks were counted after a fit, so that there is a picture of them (`ranks_picture`).
+bool has_ranks(std::span<const BeforeAfter> errors);
 /// Histograms of ranks as drawings, one per observable; the grey band holds 95 % of the bars of a right model.
 Markup rank_histograms(const std::vector<Coverage>& list);
 

@@ -184,7 +184,7 @@ std::string calibration_json(const Calibration& c) {
   json["inputs"] = json_of(c.inputs);
   json["warnings"] = c.warnings;
   json["files"] = {"calibration.json", "report.md", "fitted.toml"};
-  if (!ranks_picture(c.errors).empty()) json["files"].push_back("ranks.svg");
+  if (has_ranks(c.errors)) json["files"].push_back("ranks.svg");
   return json_text(json);
 }
 

@@ -172,7 +172,7 @@ void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet)
     return;
   }
   ReportMap map{"hazard_class_undecided", "Class not decided", "1", {}, {}, {}};
-  map.file = "hazard_class.tif, band \"undecided\"";
+  map.file = "hazard_class.tif, band undecided";
   map.style = {
       undecided.band(), true, {{0.0, "decided", {200, 200, 200}}, {1.0, "not decided by so few blocks", {213, 94, 0}}}};
   map.classes_only = true;

@@ -46,7 +46,7 @@ std::string sites_calibration_json(const SitesCalibration& c) {
                      {"coverage", coverage_json(e.errors)},
                      {"tail", tail_json(e.errors)}});
     files.push_back(e.site + "/fitted.toml");
-    if (!ranks_picture(e.errors).empty()) files.push_back(e.site + "/ranks.svg");
+    if (has_ranks(e.errors)) files.push_back(e.site + "/ranks.svg");
   }
   Json json{{"program", "talus"},
             {"version", version()},

@@ -215,7 +215,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     std::optional<double> width;
     if (!parts.lines.empty()) {
       width = layer.number(*feature, width_field, "width", kWidth);
-      if (width.value_or(0.0) > kWidest)
+      if (width.value_or(0.0) > kWidestObject)
         state_->warnings.push_back(layer.label(*feature) + ": width = " + text_of(*width) +
                                    " m, wider than any road: must be in metres");
       (width ? state_->lines_of_their_width : state_->lines_of_given_width) += 1;

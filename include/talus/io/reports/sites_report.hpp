@@ -47,7 +47,7 @@ struct SitesRecord : FitRecord {
 /// @param how  trials, seed, first trial, threads
 void open_holdout(std::span<const Site> sites, SitesRecord& record, const ObserveOptions& how);
 
-/// What a reader must know besides the scores: what could not be cross-validated, and folds that split groups.
+/// Warnings beside those of the scores: why the sites could not be cross-validated, and sites whose folds split groups.
 std::vector<std::string> sites_warnings(const SitesRecord& record);
 
 /// The text of diagnosis.json, of report.html, and of the summary on the terminal. docs/several-campaigns.md.

@@ -11,7 +11,7 @@
 namespace talus::io {
 
 /// Width of an object above which it is asked whether it is in metres [m]: no house and no road is as wide.
-inline constexpr double kWidest = 100.0;
+inline constexpr double kWidestObject = 100.0;
 
 /// Polygons and lines of a vector file with their attributes, in local metres.
 class ObjectLayer {
