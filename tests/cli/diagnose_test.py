@@ -22,6 +22,13 @@ class Diagnose(Case):
         self.fails(2, "nowhere.toml", arguments=("diagnose", self.path("nowhere.toml"), "-o", self.path("out")))
         self.assertFalse(os.path.exists(self.path("out")))
 
+    def test_a_start_with_effects_is_refused(self):
+        """`diagnose` would look for an effect that the ground has already."""
+        self.write("start.toml", '[ground]\ndefault = "upper-talus-3d"\n[effects.air-drag]\ncoefficient = 0.8\n')
+        self.fails(2, "start.toml", "must be ground alone", arguments=(
+            "diagnose", f"{ELM}/campaign.toml", "--parameters", self.path("start.toml"), "-o", self.path("out")))
+        self.assertFalse(os.path.exists(self.path("out")))
+
 
 class Loop(Case):
     def diagnose(self, campaign, *options, untested=frozenset(), rounds=9):
@@ -87,9 +94,12 @@ class Diagnosis(Loop):
 class OfOthers(Loop):
     def test_measured_blocks_of_a_quarry(self):
         """Releases of one day, and only end points measured: neither days nor instruments can be tested."""
-        found = self.diagnose(f"{CAMPAIGNS}/authume/campaign.toml", *FEW, "--fit", "theta_scale,En50", untested={"wet-ground", "instrument-bias"})  # 24 of its 48 blocks are fitted: a third of 72
+        start = self.write("start.toml", '[ground.zones.default]\npreset = "upper-talus-3d"\npsi_scale = 0.85\n')
+        found = self.diagnose(f"{CAMPAIGNS}/authume/campaign.toml", *FEW, "--fit", "theta_scale,En50", "--parameters", start, untested={"wet-ground", "instrument-bias"})  # 24 of its 48 blocks are fitted: a third of 72
         self.assertEqual(found["trials_per_block"], {"search": 30, "test": 90, "compare": 600})
         self.assertGreater(len(found["residual"]), 3)
+        self.assertEqual(found["start_model"], start)  # what is not fitted stays as the start has it
+        self.assertIn("psi_scale = 0.85\n", self.read_text(self.path("out/fitted.toml")))
 
 
 if __name__ == "__main__":

@@ -228,6 +228,10 @@ class FlagsForKeys(InputCase):
         self.assert_as_by_key()
         self.refused("flag --deformation-coefficient = -1", more=["--deformation-coefficient", "-1"])
 
+    def test_a_list_with_spaces(self):  # "300: no such file, must be a TOML file"
+        self.fails(2, "300: is taken for the file of a scenario", "--thresholds 30,300",
+                   arguments=(*self.arguments(), "--thresholds", "30", "300"))
+
     def test_a_field_that_is_not_read(self):
         points = [(f"POINT ({WEST + 152.5 + 10 * i} {NORTH - 62.5})", [0.5]) for i in range(3)]
         write_features(self.path("often.gpkg"), "often", points, [("frequency", ogr.OFTReal)])
@@ -364,6 +368,11 @@ class Archives(InputCase):
             self.run_well("check", self.path("out/scenario.toml"), cwd="/")
             for given in self.record()["inputs"][1:]:
                 self.assertIn(self.path("one/d.zip"), given["path"])
+
+    def test_an_archive_by_itself_says_how_its_files_are_named(self):
+        self.zipped("one", WEST)
+        self.fails(2, "/vsizip/d.zip/FILE", arguments=("check", "--dem", "d.zip", "--sources", "/vsizip/d.zip/s.csv"),
+                   cwd=self.path("one"))
 
     def test_flags_are_relative_to_the_current_folder(self):
         self.zipped("one", WEST)

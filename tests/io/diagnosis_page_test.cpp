@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "io/reports/diagnosis_summary.hpp"
+#include "talus/io/reports/sites_report.hpp"
 
 namespace talus::io {
 namespace {
@@ -217,6 +218,31 @@ TEST(DiagnosisWarnings, OfFoldsThatSplitGroupsAndOfAModelThatNoFileHolds) {
   ASSERT_EQ(warnings.size(), 2U);
   EXPECT_EQ(warnings[0].find("the folds split groups"), 0U);
   EXPECT_EQ(warnings[1].find("with_effect.toml is not the whole model"), 0U);
+}
+
+/// A prior holds back a ground that is far from its start: 2 standard deviations of a normal prior are rare (5 %), and
+/// in docs/diagnosis-results.md, "Ground far from the start", false alarms are more frequent there.
+TEST(DiagnosisWarnings, OfAGroundFarFromItsStart) {
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  FittedModel& base = record.diagnosis.base;
+  base.free.resize(3);
+  base.free[0].key = "ground.zones.talus.theta_scale";
+  base.free[1].key = "ground.zones.talus.En50";
+  base.free[2].key = "ground.zones.rock.Et50";
+  base.z = Eigen::Vector3d(-1.4, 1.2, 0.0);
+  EXPECT_TRUE(diagnosis_warnings(record).empty());
+  base.z = Eigen::Vector3d(-2.04, 1.2, 1.71);
+  ASSERT_EQ(diagnosis_warnings(record).size(), 1U);
+  EXPECT_EQ(diagnosis_warnings(record).front().find("the fitted ground is far from its start "
+                                                    "(ground.zones.talus.theta_scale by 2.0, ground.zones.rock.Et50 "
+                                                    "by 1.7 standard deviations of the prior)"),
+            0U);
+  SitesRecord sites;
+  sites.diagnosis.sites.resize(1);
+  sites.diagnosis.sites[0].name = "south";
+  sites.diagnosis.sites[0].base.free = base.free;
+  sites.diagnosis.sites[0].base.z = base.z;
+  EXPECT_EQ(sites_warnings(sites), std::vector<std::string>{"south: " + diagnosis_warnings(record).front()});
 }
 
 }  // namespace

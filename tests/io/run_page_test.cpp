@@ -106,9 +106,11 @@ TEST_F(Tables, TheObjectsHitMostOftenOfMany) {  // object i of 12345 is hit (791
 }
 
 TEST_F(Tables, ObjectsThatWereNotAssessedAreNotCalledSafe) {  // they were hit 0 times a year
-  std::string table = "object,frequency,frequency_lower,frequency_upper,return_period_30,sources\n";
-  for (int i = 0; i < 102; ++i) table += "gap " + std::to_string(i) + ",,,,,\n";
-  write_text("objects.csv", table + "mill,0.5,0.4,0.6,4,cliff\nbarn,0,0,0.1,,\n");
+  std::string table =
+      "object,frequency,frequency_lower,frequency_upper,frequency_30,return_period_30,frequency_30_lower,"
+      "frequency_30_upper,sources\n";
+  for (int i = 0; i < 102; ++i) table += "gap " + std::to_string(i) + ",,,,,,,,\n";
+  write_text("objects.csv", table + "mill,0.5,0.4,0.625,0.25,4,0.2,0.5,cliff\nbarn,0,0,0.1,0,,0,0.05,\n");
   const ObjectsPart part = read_objects_part(path(""));
   EXPECT_EQ(part.not_assessed.size(), 100U);
   EXPECT_EQ(part.thresholds, std::vector<std::string>{"30"});
@@ -116,16 +118,18 @@ TEST_F(Tables, ObjectsThatWereNotAssessedAreNotCalledSafe) {  // they were hit 0
   const std::string html = objects_html(part, false).text(),
                     why = "</td><td colspan='4'>not assessed: the DEM has no height there</td></tr>\n";
   EXPECT_THAT(html, HasSubstr("<tr><td>gap 99" + why + "<tr><td>2 more objects" + why + "<tr><td>mill</td>"));
-  EXPECT_THAT(html, HasSubstr("<tr><td>barn</td><td class='n'>0 [0, 0.1]</td><td class='n'>no event</td>"));
+  EXPECT_THAT(html, HasSubstr("<td class='n'>2 [1.6 to 2.5]</td><td class='n'>4 [2 to 5]</td>"));
+  EXPECT_THAT(html, HasSubstr("<tr><td>barn</td><td class='n'>0 [0, 0.1]</td><td class='n'>no event [10 or more]</td>"
+                              "<td class='n'>no event [20 or more]</td>"));
   EXPECT_THAT(html, Not(HasSubstr("Never seen")));
 }
 
 TEST_F(Tables, ObjectsThatAreHitOnceInManyYears) {  // refused above 1e15 years
-  write_text(
-      "objects.csv",
-      "object,frequency,frequency_lower,frequency_upper,return_period_30,sources\nmill,1e-100,0,1e-99,1e200,x\n");
+  write_text("objects.csv",
+             "object,frequency,frequency_lower,frequency_upper,frequency_30,return_period_30,frequency_30_lower,"
+             "frequency_30_upper,sources\nmill,1e-100,0,1e-99,1e-200,1e200,0,1e-199,x\n");
   EXPECT_THAT(objects_html(read_objects_part(path("")), false).text(),
-              HasSubstr("<td class='n'>1e+100</td><td class='n'>1e+200</td>"));
+              HasSubstr("<td class='n'>1e+100 [1e+99 or more]</td><td class='n'>1e+200 [1e+199 or more]</td>"));
 }
 
 TEST_F(Tables, LargerThanAPageReadsAreLeftOutAndSaid) {

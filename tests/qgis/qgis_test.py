@@ -910,6 +910,15 @@ class FromPython(Case):
         good, message = run.checkParameterValues(self.inputs(DIAMETER="1.2", TRAJECTORIES="5"), QgsProcessingContext())
         self.assertTrue(good, message)
 
+    def test_a_misspelt_parameter_is_refused(self):
+        """QGIS passes over it: the deformation coefficient would be the default one, without a word."""
+        run = QgsApplication.processingRegistry().createAlgorithmById("talus:run")
+        for key, near in (("DEFORMATION_COEFICIENT", "; is DEFORMATION_COEFFICIENT meant?"), ("diameter", "; is DIAMETER meant?"),
+                          ("XYZ", "")):
+            good, message = run.checkParameterValues({**self.inputs(), key: 0.15}, QgsProcessingContext())
+            self.assertFalse(good)
+            self.assertEqual(message, f"{key}: no such parameter of talus:run" + near)
+
     def test_a_run_that_is_done_is_loaded_when_it_is_resumed(self):
         self.run_algorithm("run", self.inputs())
         long_ago = time.time() - 3600.0

@@ -19,6 +19,7 @@ namespace {
 
 struct Options : CampaignCommand {
   talus::DiagnoseOptions how;
+  std::string parameters;  // file of the ground from which the fit starts; empty: the default preset
   bool nested = false, no_nested = false, quick_folds = false, no_quick_folds = false;
   std::vector<std::string> of_one;  ///< given flags that hold for one campaign alone
 };
@@ -110,7 +111,7 @@ int diagnose(const Options& options) {
                                    : "; diagnose each campaign alone with it"));
     talus::DiagnoseOptions how = options.how;
     how.nested = !options.no_nested;
-    return diagnose_several(options, how);
+    return diagnose_several(options, how, options.parameters);
   }
   const auto start = std::chrono::steady_clock::now();
   talus::io::DiagnosisRecord record;
@@ -119,11 +120,14 @@ int diagnose(const Options& options) {
   require_releases(options.campaigns.front(), campaign);
   record.options = options.how;
   choose_folds(options, campaign, record.options);
+  std::vector<std::string> of_start;
+  const talus::Model ground = start_ground(options.parameters, campaign, of_start);
+  for (const std::string& warning : of_start) warn(options, record, warning);
+  record.start_name = options.parameters.empty() ? std::string(talus::kDefaultPreset) : options.parameters;
   Progress progress(Progress::mode_of(options.quiet, options.progress), 0, "diagnose");
   record.options.proceed = [&progress](double share) { return progress.update(share) && !interrupted(); };
   try {
-    record.diagnosis =
-        talus::diagnose(campaign, talus::model_of_preset(campaign, talus::kDefaultPreset), record.options);
+    record.diagnosis = talus::diagnose(campaign, ground, record.options);
     talus::io::open_holdout(campaign, record);
   } catch (const talus::FitInterrupted&) {
     stop_interrupted();
@@ -141,12 +145,25 @@ int diagnose(const Options& options) {
 
 }  // namespace
 
+talus::Model start_ground(const std::string& file, const talus::Campaign& campaign,
+                          std::vector<std::string>& warnings) {
+  talus::Model model = start_model(file, campaign, warnings);
+  if (model.effects.any() || !model.barriers.empty() || !model.bias.empty())
+    throw talus::InputError("flag --parameters = '" + file +
+                            "': has effects, barriers or a bias of instruments, must be ground alone: diagnose looks "
+                            "for the rest itself; leave out [effects.*], [barriers] and [[instrument_bias]]");
+  return model;
+}
+
 void add_diagnose(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("diagnose", "Find what a fitted model leaves of measured data, and which effect explains it");
   talus::DiagnoseOptions& how = options->how;
   options->add_to(*command, how.trials.search, 10, how.keys, how.seed, how.threads);
+  with(command->add_option("--parameters", options->parameters,
+                           "ground from which the fit starts, without effects; else upper-talus-3d"),
+       file_of({"toml"}));
   with(command->add_option("--test-trials", how.trials.test, "trajectories per block in the tests (100)")
            ->check(CLI::Range(10, 10000)),
        default_of(how.trials.test));

@@ -29,9 +29,10 @@ bool holds_out(const talus::Site& site) {
 
 }  // namespace
 
-/// @param how  `nested`: where no site holds anything out
-int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOptions& how) {
-  const auto start = std::chrono::steady_clock::now();
+/// @param how    `nested`: where no site holds anything out
+/// @param start  file of a ground; empty: the default preset
+int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOptions& how, const std::string& start) {
+  const auto begin = std::chrono::steady_clock::now();
   talus::io::SitesRecord record;
   OpenedSites opened(command, record);
   for (std::size_t i = 0; i < opened.sites.size(); ++i) require_releases(opened.paths[i], *opened.sites[i].campaign);
@@ -42,11 +43,15 @@ int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOption
   record.options.nested = how.nested && std::ranges::none_of(opened.sites, holds_out);
   Progress progress(Progress::mode_of(command.quiet, command.progress), 0, "diagnose");
   record.options.proceed = [&progress](double share) { return progress.update(share) && !interrupted(); };
-  std::vector<talus::Model> presets;
-  for (const talus::Site& site : opened.sites)
-    presets.push_back(talus::model_of_preset(*site.campaign, talus::kDefaultPreset));
+  record.start_name = start.empty() ? std::string(talus::kDefaultPreset) : start;
+  std::vector<talus::Model> grounds;
+  for (const talus::Site& site : opened.sites) {
+    std::vector<std::string> warnings;
+    grounds.push_back(start_ground(start, *site.campaign, warnings));
+    for (const std::string& warning : warnings) warn(command, record, site.name + ": " + warning);
+  }
   try {
-    record.diagnosis = talus::diagnose_sites(opened.sites, presets, record.options);
+    record.diagnosis = talus::diagnose_sites(opened.sites, grounds, record.options);
   } catch (const talus::FitInterrupted&) {
     stop_interrupted();
   }
@@ -55,7 +60,7 @@ int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOption
   if (interrupted()) stop_interrupted();
   warn_of_sites(command, record, record.evidence);
   for (const std::string& warning : talus::io::sites_warnings(record)) warn(command, record, warning);
-  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   write_results(opened, record);
   opened.folder.commit();
   progress.finish();

@@ -36,12 +36,15 @@ void warn_of_sites(const CampaignCommand& command, talus::io::FitRecord& record,
 /// @param share  those that the sites share
 int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how, const std::string& start,
                     const std::vector<std::string>& fit, const std::vector<std::string>& share);
-int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOptions& how);
+int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOptions& how, const std::string& start);
 
 // Steps of `calibrate` for one campaign, or each of several.
 
 /// The model of a file, from which a fit starts; without a file the default preset.
 talus::Model start_model(const std::string& file, const talus::Campaign& campaign, std::vector<std::string>& warnings);
+
+/// The same for `diagnose`. Throws InputError where the model has more than its ground.
+talus::Model start_ground(const std::string& file, const talus::Campaign& campaign, std::vector<std::string>& warnings);
 
 /// Chooses what is fitted: the asked parameters of the zones that simulated paths touch, then the asked numbers of
 /// effects.

@@ -46,6 +46,14 @@ bool ends_with(const std::string& path, const std::string& end) {
   return path.size() >= end.size() && EQUAL(path.c_str() + path.size() - end.size(), end.c_str());
 }
 
+/// How to name a file within an archive; empty if the path is none.
+std::string archive_hint(const std::string& path) {
+  const char* reader = ends_with(path, ".zip")                              ? "/vsizip/"
+                       : ends_with(path, ".tar") || ends_with(path, ".tgz") ? "/vsitar/"
+                                                                            : nullptr;
+  return reader == nullptr ? "" : "; a file in an archive is named " + std::string(reader) + path + "/FILE";
+}
+
 }  // namespace
 
 void start_gdal() {
@@ -114,7 +122,7 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
     const char* columns = (kinds & GDAL_OF_VECTOR) != 0 && is_text_table(file)
                               ? " (a CSV must have two columns at least: put another one beside wkt, as id)"
                               : "";
-    throw InputError(path + ": cannot be opened as a " + kind + ": " + messages.take() + columns +
+    throw InputError(path + ": cannot be opened as a " + kind + ": " + messages.take() + columns + archive_hint(path) +
                      "; docs/security.md has the formats that are read");
   }
   if ((kinds & GDAL_OF_RASTER) != 0) refuse_named_overviews(*dataset, path);

@@ -187,6 +187,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
             {"residual_after", residual_json(d.rounds.back().residual)},
             {"campaign", record.campaign},
             {"surface", {{"value", record.surface}, {"source", record.surface_from}}},
+            {"start_model", record.start_name},
             {"seed", record.options.seed},
             {"trials_per_block", trials_json(d.trials)},
             {"seconds", json_of(record.seconds)},

@@ -86,6 +86,20 @@ std::vector<std::string> costly_warnings(const DiagnosisRecord& record) {
 
 }  // namespace
 
+std::string far_ground_warning(const FittedModel& base) {
+  constexpr double kFar = 1.5;  // standard deviations of the prior: in the study false alarms were more frequent beyond
+  std::string far;
+  for (Eigen::Index i = 0; i < base.z.size(); ++i)
+    if (std::abs(base.z[i]) > kFar)
+      far += (far.empty() ? "" : ", ") + base.free[static_cast<std::size_t>(i)].key + " by " +
+             with_decimals(std::abs(base.z[i]), 1);
+  if (far.empty()) return "";
+  return "the fitted ground is far from its start (" + far +
+         " standard deviations of the prior), which holds it back: place and instrument may be blamed falsely; "
+         "diagnose "
+         "again from there (--parameters with this fitted.toml) and compare";
+}
+
 std::string folds_text(const NestedValidation& nested) {
   std::vector<std::pair<std::string, int>> counts;
   for (const OuterFold& loop : nested.loops) {
@@ -142,6 +156,7 @@ bool choice_has_seen(const DiagnosisRecord& record) {
 std::vector<std::string> diagnosis_warnings(const DiagnosisRecord& record) {
   std::vector<std::string> warnings = costly_warnings(record);
   const Diagnosis& d = record.diagnosis;
+  if (const std::string far = far_ground_warning(d.base); !far.empty()) warnings.push_back(far);
   if (d.nested && d.nested->folds.splits_groups) warnings.emplace_back(kSplitGroups);
   if (!d.with_effects.model.zones.values.empty())
     warnings.push_back(

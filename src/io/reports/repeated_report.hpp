@@ -14,6 +14,10 @@ inline constexpr const char* kSplitGroups =
     "the folds split groups: a block is judged by a fit to others of its group, and the error out of fold may be too "
     "low; give every fitting block a group, or fewer --folds (a group of more than half of the blocks is always split)";
 
+/// Warning of a ground whose fit ended far from its start: tests of place and instrument raise more false alarms there.
+/// Empty where it is near. docs/diagnosis-results.md.
+std::string far_ground_warning(const FittedModel& base);
+
 /// Scores the blocks that were simulated out of their folds: rows "out-of-fold".
 BeforeAfter out_of_fold_rows(const Campaign& campaign, const NestedValidation& nested);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "io/gdal/csv_table.hpp"
@@ -118,12 +119,19 @@ Markup not_assessed_row(const std::string& name, const ObjectsPart& part) {
          "'>not assessed: the DEM has no height there</td></tr>\n";
 }
 
+/// "120 [80 to 300]": the return period of a frequency with its bounds; without an event the lower bound alone.
+std::string years_text(std::optional<double> frequency, std::optional<double> low, std::optional<double> high) {
+  const auto once_in = [](std::optional<double> f) { return f && *f > 0.0 ? readable(1.0 / *f) : std::string(); };
+  const std::string years = once_in(frequency), least = once_in(high), most = once_in(low);
+  if (least.empty()) return years.empty() ? "no event" : years;
+  return (years.empty() ? "no event" : years) + " [" + least + (most.empty() ? " or more]" : " to " + most + "]");
+}
+
 Markup object_row(const ObjectsPart::Object& object) {
   Markup row = "<tr><td>"_html + object.name + "</td><td class='n'>" + with_digits(object.frequency, 3) + " [" +
                with_digits(object.low, 3) + ", " + with_digits(object.high, 3) + "]</td><td class='n'>" +
-               (object.frequency > 0.0 ? readable(1.0 / object.frequency) : "no event") + "</td>";
-  for (const std::string& years : object.years)
-    row += "<td class='n'>"_html + (years.empty() ? std::string("no event") : years) + "</td>";
+               years_text(object.frequency, object.low, object.high) + "</td>";
+  for (const std::string& years : object.years) row += "<td class='n'>"_html + years + "</td>";
   return row + "<td>" + shortened(object.sources, 300) + "</td></tr>\n";
 }
 
@@ -139,10 +147,9 @@ void add_object(const CsvTable& table, const CsvTable::Row& row, ObjectsPart& pa
     return;
   }
   ObjectsPart::Object object{name, table.text(row, "sources"), *frequency, *low, *high, {}, {}};
-  for (const std::string& energy : part.thresholds) {
-    const auto years = number(kYears + energy);
-    object.years.push_back(years ? readable(*years) : "");
-  }
+  for (const std::string& energy : part.thresholds)
+    object.years.push_back(years_text(number("frequency_" + energy), number("frequency_" + energy + "_lower"),
+                                      number("frequency_" + energy + "_upper")));
   part.objects.push_back(std::move(object));
 }
 
@@ -182,9 +189,11 @@ Markup objects_html(const ObjectsPart& part, bool pieces) {
   if (part.objects.empty() && part.not_assessed.empty())
     return part.note.empty() ? Markup() : "<h2>Objects</h2>\n"_html + note;
   Markup html =
-      "<h2>Objects</h2>\n<p>How often each object is hit, with 95 % bounds of the number of blocks. \"No event\": no "
-      "block of this run did it; it may happen all the same, as often as the upper bound: that of the hits is in "
-      "brackets, those above an energy are in objects.csv.</p>\n"_html;
+      "<h2>Objects</h2>\n<p>How often each object is hit, with 95 % bounds of the number of blocks in brackets. \"No "
+      "event\": no block of this run did it; it may happen all the same, as often as the upper bound. Energies are the "
+      "largest within the outline (safe for what does not stop a block: a yard, a road); at the first touch, for a "
+      "wall, they are in objects.csv (entry), at a barrier in its table. The class of the place is that of the map "
+      "\"Hazard class\".</p>\n"_html;
   if (pieces) html += "<p>Blocks broke, and "_html + kHitsOfPieces + ".</p>\n";
   html += "<div class='wide'><table><tr><th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
   for (const std::string& energy : part.thresholds) html += "<th>above "_html + energy + " kJ once in [years]</th>";

@@ -276,6 +276,8 @@ std::vector<std::string> sites_warnings(const SitesRecord& record) {
   std::vector<std::string> warnings;
   if (!d.not_nested.empty())
     warnings.push_back("there is no error of unseen rows: " + d.not_nested + " (measure more, or hold rows out)");
+  for (const SiteDiagnosis& site : d.sites)
+    if (const std::string far = far_ground_warning(site.base); !far.empty()) warnings.push_back(site.name + ": " + far);
   for (std::size_t i = 0; i < d.nested.size(); ++i)
     if (d.nested[i].folds.splits_groups) warnings.push_back(d.sites[i].name + ": " + kSplitGroups);
   return warnings;
@@ -309,6 +311,7 @@ std::string sites_json(const SitesRecord& record) {
             {"candidates", candidates_json(first, record.candidates.front())},
             {"residual", by_site(d, [&](std::size_t i) { return residual_json(d.sites[i].residual); })},
             {"findings_of_single_sites", own_findings(record)},
+            {"start_model", record.start_name},
             {"seed", record.options.seed},
             {"trials_per_block", trials_json(d.trials)},
             {"seconds", json_of(record.seconds)},

@@ -10,6 +10,7 @@
 #include "file_kind.hpp"
 #include "frequency_keys.hpp"
 #include "ground_keys.hpp"
+#include "io/gdal/csv_table.hpp"
 #include "io/gdal/input_name.hpp"
 #include "io/gdal/vrt_check.hpp"
 #include "scenario_flags.hpp"
@@ -351,11 +352,20 @@ static void keep_vrt_folders(ScenarioSpec& spec, std::vector<std::string>& fault
   }
 }
 
+/// A list of numbers with spaces leaves a number for the scenario: --thresholds 30 300.
+static void refuse_a_number(const std::string& scenario) {
+  if (number_of_cell(scenario) && !std::filesystem::exists(scenario))
+    throw InputError(scenario +
+                     ": is taken for the file of a scenario, which is not there; numbers of a list are written with "
+                     "commas and without spaces: --thresholds 30,300");
+}
+
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) {
   ScenarioSpec spec;
   start_with_preset(spec, flags, faults);
   start_with_model(spec, flags, faults);
   if (!flags.scenario.empty()) {
+    refuse_a_number(flags.scenario);
     spec.scenario = {std::filesystem::absolute(flags.scenario).lexically_normal().string(), flags.scenario};
     allow_folder_of(flags.scenario);
     const TomlValue root = read_toml(flags.scenario, flags.scenario);

@@ -1,5 +1,6 @@
 """The algorithms: one class for all commands. Their parameters are what `talus help --json` says; ALGORITHMS holds only what
 QGIS needs in addition: which inputs are layers, whose fields are picked, which files come out."""
+import difflib
 import glob
 import os
 import re
@@ -75,7 +76,7 @@ ALGORITHMS = [
      "files": {"fitted": "fitted.toml", "report": "report.md", "record": "calibration.json"}},
     {"id": "diagnose", "command": "diagnose", "help": "closing-the-loop", "phases": ["diagnose"], "folder": "out",
      "nothing to load": True,
-     "advanced": {"fit", "trials", "test-trials", "most-effects", "level", "base-fits", "all-rows", "nested", "no-nested",
+     "advanced": {"fit", "trials", "parameters", "test-trials", "most-effects", "level", "base-fits", "all-rows", "nested", "no-nested",
                   "folds", "quick-folds", "no-quick-folds"},
      "files": {"fitted": "fitted.toml", "report": "report.html", "record": "diagnosis.json"}},
     {"id": "report", "command": "report", "help": "report", "phases": []},
@@ -313,13 +314,26 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
                 parameters.get("OUT")):
             return False, tr("\"Resume\" needs the folder of the run that was cancelled: name it under \"Results\". A "
                              "temporary folder is a new one at every run.")
-        if fault := self._fault_of_numbers(parameters):
+        if fault := self._fault_of_names(parameters) or self._fault_of_numbers(parameters):
             return False, fault
         given = dict(parameters)
         for key in map(key_of, self.table.get("several", ())):  # a script may still give the selected features of one layer
             if isinstance(given.get(key), QgsProcessingFeatureSourceDefinition):
                 given[key] = given[key].source.staticValue()
         return super().checkParameterValues(given, context)
+
+    def _fault_of_names(self, parameters):
+        """What is wrong with a name that no algorithm of Talus has, as in a call of qgis_process: QGIS would pass over it. Those
+        of others are passed over: a script may give one set of inputs to check and to run."""
+        names = [definition.name() for definition in self.parameterDefinitions()]
+        of_all = {definition.name() for algorithm in self.provider().algorithms()
+                  for definition in algorithm.parameterDefinitions()}
+        for name in parameters:
+            if name not in of_all:
+                near = difflib.get_close_matches(str(name).upper(), names, 1)
+                fault = tr("{name}: no such parameter of {id}").format(name=name, id=self.id())
+                return fault + (tr("; is {near} meant?").format(near=near[0]) if near else "")
+        return ""
 
     def _fault_of_numbers(self, parameters):
         """What is wrong with a number that is given as text, as by qgis_process: QGIS would take "1,2" for 0."""
@@ -465,18 +479,22 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
                     flags.append(p["flags"][-1])
                 else:
                     flags.append(f"{p['flags'][-1]}={value}")
-        flags += self._field_words(parameters, context)
+        flags += self._field_words(parameters, context, feedback)
         if any(p["name"] == "progress" for p in self.described()):
             flags.append("--progress=json")
         return flags + (["--", *positional] if positional else [])
 
-    def _field_words(self, parameters, context):
+    def _field_words(self, parameters, context, feedback):
         words = []
         for name, fields in self.table.get("fields", {}).items():
             for field, _ in fields:
                 column = self._column(parameters, key_of(field) + "_FIELD", name, context)
                 if column:
                     words.append(f"--field={field}={column}")
+                elif field == "frequency" and parameters.get("FREQUENCY") not in (None, ""):
+                    words.append("--field=frequency=")  # the program takes one of the two
+                    feedback.pushInfo(tr("The events per year are those that were given; a field frequency of the sources is "
+                                         "not read."))
         return words
 
     def _column(self, parameters, key, layer, context):

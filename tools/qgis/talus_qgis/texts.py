@@ -185,6 +185,10 @@ GERMAN = {
     "{name}: give the polygons or the raster, not both": "{name}: die Flächen oder das Raster angeben, nicht beides",
     "Give the terrain and the sources, or a scenario file.": "Gelände und Ausbruchgebiete angeben, oder eine Szenario-Datei.",
     "{name}: '{value}' is no number: write {number}": "{name}: «{value}» ist keine Zahl: {number} schreiben",
+    "The events per year are those that were given; a field frequency of the sources is not read.":
+        "Es gilt die angegebene Zahl der Ereignisse pro Jahr; ein Feld frequency der Ausbruchgebiete wird nicht gelesen.",
+    "{name}: no such parameter of {id}": "{name}: kein Parameter von {id}",
+    "; is {near} meant?": "; ist {near} gemeint?",
     "Loads the results as a group of layers.": "Lädt die Ergebnisse als Gruppe von Layern.",
     "Band of the raster that holds the heights.": "Band des Rasters mit den Höhen.",
     "Field of the sources that is read as {field}. Where none is picked, their field named {field} is read, if they have one.":
@@ -378,6 +382,8 @@ GERMAN = {
     "of the random numbers (1)": "der Zufallszahlen (1)",
     "model from which the fit starts, whose effects it keeps; else upper-talus-3d without effects":
         "Modell, von dem die Anpassung ausgeht und dessen Effekte sie behält; sonst upper-talus-3d ohne Effekte",
+    "ground from which the fit starts, without effects; else upper-talus-3d":
+        "Boden, von dem die Anpassung ausgeht, ohne Effekte; sonst upper-talus-3d",
     "searches from different starts (3)": "Suchen von verschiedenen Startwerten aus (3)",
     "parameters that several campaigns share; all others each has its own":
         "Parameter, die mehrere Messkampagnen gemeinsam haben; alle anderen hat jede für sich",

@@ -32,6 +32,7 @@ struct DiagnosisRecord : FitRecord {
   std::vector<std::vector<HoldoutError>> candidates;     ///< as DiagnosisRound::candidates
   double seconds = 0.0;                                  ///< by the clock
   double cpu_seconds = 0.0;  ///< of all threads; the phases of the diagnosis are parts of it
+  std::string start_name;    ///< of the ground: a preset, everywhere, or the file of a model
 };
 
 /// Simulates and scores the held-out rows with every model of a diagnosis, and judges the first and the last model on
@@ -45,8 +46,8 @@ bool choice_has_seen(const DiagnosisRecord& record);
 /// The verdict over all base fits, the log score and what the folds found, as lines for the terminal.
 std::string repeated_lines(const DiagnosisRecord& record);
 
-/// Warnings of what a costly diagnosis left out (`DiagnosisRules::enough`), with the flag that asks for it; of folds
-/// that split groups; of a model that no file can hold.
+/// Warnings of what a costly diagnosis left out (`DiagnosisRules::enough`), with the flag that asks for it; of a ground
+/// far from its start; of folds that split groups; of a model that no file can hold.
 std::vector<std::string> diagnosis_warnings(const DiagnosisRecord& record);
 
 /// Names of the groups of fewer than ten unseen rows, with their rows: they stay out of the headline.

@@ -39,6 +39,7 @@ struct SitesRecord : FitRecord {
   std::vector<std::vector<double>> candidates;  ///< by round: held-out error of each, of all sites together
   std::vector<std::string> files;               ///< by site: its campaign.toml
   double seconds = 0.0;
+  std::string start_name;  ///< of the ground: a preset, everywhere, or the file of a model
 };
 
 /// Scores the models before and after what was found, and every candidate, on the rows of all sites; the first and the
@@ -47,7 +48,8 @@ struct SitesRecord : FitRecord {
 /// @param how  trials, seed, first trial, threads
 void open_holdout(std::span<const Site> sites, SitesRecord& record, const ObserveOptions& how);
 
-/// Warnings beside those of the scores: why the sites could not be cross-validated, and sites whose folds split groups.
+/// Warnings beside those of the scores: why the sites could not be cross-validated, sites whose ground ended far from
+/// its start, and sites whose folds split groups.
 std::vector<std::string> sites_warnings(const SitesRecord& record);
 
 /// The text of diagnosis.json, of report.html, and of the summary on the terminal. docs/several-campaigns.md.
