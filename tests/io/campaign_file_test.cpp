@@ -183,6 +183,18 @@ TEST_F(Campaigns, FaultsNameFileLineColumnAndValue) {
   refused("passages = \"passages.csv\"\n", {"passages.csv:2", "screens = "});
 }
 
+/// No simulated block gets to a line off the DEM: rows there would score as the climatology, better than many a model.
+TEST_F(Campaigns, AScreenThatWasCrossedMustLieOnTheDem) {
+  write_text("screens.csv",
+             "id,wkt\nS1,\"LINESTRING (600010 5200020, 600090 5200020)\"\nS2,\"LINESTRING (600010 "
+             "5100020, 600090 5100020)\"\n");
+  const std::string tables = "passages = \"passages.csv\"\nscreens = \"screens.csv\"\n";
+  write_text("passages.csv", "id,screen\na,S1\n");
+  EXPECT_TRUE(read(tables).campaign.blocks[0].passages[0].has_value());
+  write_text("passages.csv", "id,screen\na,S1\na,S2\n");
+  refused(tables, {"passages.csv:3", "screen = 'S2'", "is a line off the DEM"});
+}
+
 TEST_F(Campaigns, IdsOfScreensStayAsTheyStand) {
   write_text("screens.csv",
              "id,wkt\n01,\"LINESTRING (600010 5200020, 600090 5200020)\"\n1,\"LINESTRING (600010 5200030, 600090 "

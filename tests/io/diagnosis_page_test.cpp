@@ -220,6 +220,19 @@ TEST(DiagnosisWarnings, OfFoldsThatSplitGroupsAndOfAModelThatNoFileHolds) {
   EXPECT_EQ(warnings[1].find("with_effect.toml is not the whole model"), 0U);
 }
 
+TEST(DiagnosisWarnings, OfFewBlocksAndFewTrials) {
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  BeforeAfter& fitting = record.errors.front();
+  fitting.after.blocks = 24;
+  EXPECT_TRUE(diagnosis_warnings(record).empty());
+  record.options.trials.search = 12;
+  ASSERT_EQ(diagnosis_warnings(record).size(), 1U);
+  EXPECT_EQ(diagnosis_warnings(record).front().find("fewer trials than by default"), 0U);
+  fitting.after.blocks = 6;  // says more
+  ASSERT_EQ(diagnosis_warnings(record).size(), 1U);
+  EXPECT_EQ(diagnosis_warnings(record).front().find("only 6 blocks are fitted"), 0U);
+}
+
 /// A prior holds back a ground that is far from its start: 2 standard deviations of a normal prior are rare (5 %), and
 /// in docs/diagnosis-results.md, "Ground far from the start", false alarms are more frequent there.
 TEST(DiagnosisWarnings, OfAGroundFarFromItsStart) {

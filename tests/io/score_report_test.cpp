@@ -79,6 +79,33 @@ TEST(ScoreWarnings, OfBlocksThatCameToRestButLeaveInTheModel) {
   ASSERT_EQ(score_warnings(rows).size(), 1U);
   EXPECT_EQ(score_warnings(rows)[0].find("more than a quarter of the trials leave the DEM of 3 of 24 fitting blocks"),
             0U);
+  rows.deposits.emplace();
+  ASSERT_EQ(score_warnings(rows).size(), 1U);
+  EXPECT_EQ(score_warnings(rows)[0].find("more than half of the trials of 3 of 24 fitting mapped blocks leave the DEM"),
+            0U);
+}
+
+/// Twelve blocks, all at rest; four crossed S1, with a speed but no jump: nothing of S1 is scored, and that is said.
+TEST(Scored, NamesWhatWasMeasuredTooSeldom) {
+  Campaign campaign;
+  campaign.screens = {{"S1", {}}};
+  std::vector<BlockRuns> runs(12);
+  for (std::uint32_t b = 0; b < 12; ++b) {
+    MeasuredBlock& block = campaign.blocks.emplace_back();
+    block.stream = b;
+    block.stop = Eigen::Vector2d(b, 0.5 * b);
+    block.passages.resize(1);
+    if (b < 4) block.passages[0] = Passage{10.0 + b, kNotGiven, kNotGiven};
+    runs[b].trials = 20;
+    runs[b].x.assign(20, 3.0);
+    runs[b].y = runs[b].mass_share = runs[b].x;
+    runs[b].screens = {{runs[b].x, runs[b].x, runs[b].x}};
+  }
+  const ScoredRows rows = scored("fit", campaign, runs, std::vector<bool>(12, true));
+  EXPECT_EQ(rows.not_counted, (std::vector<std::string>{"crossed S1 (4)", "speed S1 (4)"}));
+  EXPECT_EQ(judgement_lines(rows).find("fitting rows: not scored, fewer than 5 blocks, or values that do not differ: "
+                                       "crossed S1 (4), speed S1 (4)\n"),
+            0U);
 }
 
 }  // namespace

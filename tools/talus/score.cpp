@@ -56,6 +56,12 @@ int score_model(const Options& options) {
     scores.push_back(talus::io::scored("fit", campaign, runs, talus::fitting_rows(campaign)));
   if (options.rows != "fit")
     scores.push_back(talus::io::scored("holdout", campaign, runs, talus::holdout_rows(campaign)));
+  const std::vector<bool> fitting = talus::fitting_rows(campaign);
+  if (!dump && std::ranges::count(fitting, true) == 0)
+    throw talus::InputError(
+        options.campaign + ": nothing to score: all " + std::to_string(fitting.size()) +
+        " blocks are held out (holdout = 1), must be some that are not: these give the spread of the "
+        "measurements, in which errors are counted");
   if (!dump && std::all_of(scores.begin(), scores.end(), [](const auto& s) { return s.score.groups.empty(); }))
     throw talus::InputError(options.campaign + ": nothing to score: no quantity has values of " +
                             std::to_string(talus::kFewestRows) +

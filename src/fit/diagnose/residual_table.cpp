@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "rocks.hpp"
 #include "talus/base/random.hpp"
 #include "talus/fit/score/holm.hpp"
 
@@ -127,6 +128,14 @@ void add_moments(std::vector<ResidualRow>& table, const std::string& name, const
   table.push_back({name, "spread", share, two_sided(tail), 1.0, z.size()});
 }
 
+/// The mean over the releases of each rock. @param rocks  of each value, numbered from 0
+std::vector<double> means_by(std::span<const std::size_t> rocks, std::span<const double> values) {
+  std::vector<double> sums(std::ranges::max(rocks) + 1, 0.0), releases = sums;
+  for (std::size_t i = 0; i < rocks.size(); ++i) sums[rocks[i]] += values[i], releases[rocks[i]] += 1.0;
+  for (std::size_t rock = 0; rock < sums.size(); ++rock) sums[rock] /= releases[rock];
+  return sums;
+}
+
 /// The used blocks in the order of their streams: the permutations must not depend on the order of the file.
 std::vector<std::size_t> in_order_of_streams(const Campaign& campaign, const std::vector<bool>& rows) {
   std::vector<std::size_t> order;
@@ -149,9 +158,9 @@ void correct(std::vector<ResidualRow>& table) {
 
 const std::vector<Property>& properties() {
   static const std::vector<Property> list{
-      {"mass", "kg", [](const MeasuredBlock& b) { return b.mass; }},
-      {"L1/L2", "", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.y(); }},
-      {"L1/L3", "", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.z(); }},
+      {"mass", "kg", [](const MeasuredBlock& b) { return b.mass; }, true},
+      {"L1/L2", "", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.y(); }, true},
+      {"L1/L3", "", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.z(); }, true},
       {"day", "", [](const MeasuredBlock& b) { return b.day == 0 ? kNotGiven : static_cast<double>(b.day); }},
       {"release height", "m", [](const MeasuredBlock& b) { return b.release_height; }},
       {"east", "m", [](const MeasuredBlock& b) { return b.x; }},
@@ -190,13 +199,23 @@ std::vector<ResidualRow> residual_table(const Campaign& campaign, const Residual
     if (!crossing) add_moments(table, name, all, expected);
     for (const Property& property : properties()) {
       std::vector<double> z, variance, rank, of;  // of the blocks whose property is known
+      std::vector<std::size_t> known;
       for (std::size_t i = 0; i < seen.size(); ++i) {
         const double value = property.of(campaign.blocks[seen[i]]), p = space.crossing_share(seen[i], o);
         if (std::isnan(value)) continue;
         z.push_back(all[i]), variance.push_back(p * (1.0 - p)), of.push_back(value);
         rank.push_back(crossing ? kNotGiven : space.rank_of_measured(seen[i], o));
+        known.push_back(seen[i]);
       }
       if (of.size() < rules.fewest_blocks || std::ranges::min(of) == std::ranges::max(of)) continue;
+      if (property.of_rock) {
+        const std::vector<std::size_t> rocks = rocks_of(campaign, known);
+        const std::size_t count = std::ranges::max(rocks) + 1;
+        const bool again = count < known.size();  // a rock was released more than once
+        if (again && count < rules.fewest_rocks) continue;
+        if (crossing && 2 * count <= known.size()) continue;  // the test of crossings takes blocks for independent
+        if (again && !crossing) rank = means_by(rocks, rank), of = means_by(rocks, of);
+      }
       if (crossing)
         add_crossing(table, name, property.name, z, variance, of, rules.fewest_crossings);
       else

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
+#include <limits>
 
 #include "fitting_values.hpp"
 #include "talus/fit/campaign/block_draws.hpp"
@@ -21,9 +22,11 @@ class Ranks {
   }
 
   /// @param simulated  NaN where nothing was seen
-  void add(const MeasuredBlock& block, double measured, std::span<const double> simulated) {
+  /// @param beyond     further simulated values, all larger than any measured one
+  void add(const MeasuredBlock& block, double measured, std::span<const double> simulated, std::uint32_t beyond = 0) {
     if (std::isnan(measured)) return;
     keep_finite(simulated, values_);
+    values_.insert(values_.end(), beyond, std::numeric_limits<double>::infinity());
     if (values_.size() < kFewestSimulated) {
       ++coverage_.unseen;
       return;
@@ -78,6 +81,14 @@ void add_screen(std::vector<Coverage>& list, const Campaign& campaign, std::span
   add("spin ", &Passage::spin, &BlockRuns::AtScreen::spin);
 }
 
+/// Whether all released blocks came to rest on the terrain, so that none of them is missing because it left. Trials
+/// that left went farther than these. Where blocks are missing, the others are those that happened to stay: they are
+/// compared with the trials that stay. So are mapped blocks, of which those that left were never seen.
+bool all_at_rest(const Campaign& campaign) {
+  return campaign.deposits == nullptr &&
+         std::ranges::all_of(campaign.blocks, [](const MeasuredBlock& b) { return b.stop.has_value(); });
+}
+
 void correct(std::vector<Coverage>& list) {
   std::vector<double> p;
   for (const Coverage& c : list)
@@ -103,10 +114,12 @@ std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRu
                                std::uint64_t seed) {
   std::vector<Coverage> list;
   Ranks runout("runout", seed);
+  const bool left_are_farther = all_at_rest(campaign);
   for (std::size_t b = 0; b < campaign.blocks.size(); ++b)
     if (ask[b])
       runout.add(campaign.blocks[b], runout_of(campaign, campaign.blocks[b]),
-                 runouts_of(campaign, campaign.blocks[b], runs[b]));
+                 runouts_of(campaign, campaign.blocks[b], runs[b]),
+                 left_are_farther ? runs[b].ends[static_cast<std::size_t>(End::Left)] : 0);
   runout.add_to(list);
   for (std::size_t s = 0; s < campaign.screens.size(); ++s) add_screen(list, campaign, runs, ask, s, seed);
   correct(list);

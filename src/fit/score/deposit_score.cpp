@@ -52,12 +52,8 @@ double spread_of(const Places& places) {
 class DepositScorer {
  public:
   DepositScorer(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
-                std::size_t fewest_simulated)
-      : campaign_(campaign),
-        ask_(ask),
-        fewest_simulated_(fewest_simulated),
-        nothing_simulated_(runs.empty()),
-        rows_(runs) {
+                const ScoreOptions& options)
+      : campaign_(campaign), runs_(runs), ask_(ask), options_(options), nothing_simulated_(runs.empty()), rows_(runs) {
     for (std::uint32_t b = 0; b < campaign.blocks.size(); ++b) {
       simulated_.emplace_back();
       if (!runs.empty() && ask[b]) simulated_[b] = stops_of(runs[b]);
@@ -74,7 +70,7 @@ class DepositScorer {
   const Places& anywhere(const MeasuredBlock& block) const {
     return campaign_.deposits->anywhere[region_at(*campaign_.deposits, *block.stop)];
   }
-  bool too_few(std::size_t simulated) const { return simulated < fewest_simulated_; }
+  bool too_few(std::size_t simulated) const { return simulated < options_.fewest_simulated; }
 
   void places(std::size_t number) {
     Places fitting;
@@ -87,7 +83,8 @@ class DepositScorer {
       const MeasuredBlock& block = campaign_.blocks[b];
       if (!ask_[b] || class_of(campaign_, block) != number) continue;
       const bool unseen = too_few(simulated_[b].size());
-      row(b, fair_energy_score(unseen ? anywhere(block) : simulated_[b], *block.stop) / spread, unseen);
+      const double gone = options_.leaving_costs && !nothing_simulated_ ? kGone * most_gone(runs_[b]) : 0.0;
+      row(b, fair_energy_score(unseen ? anywhere(block) : simulated_[b], *block.stop) / spread + gone, unseen);
     }
     rows_.close(class_name(*campaign_.deposits, number));
   }
@@ -116,8 +113,9 @@ class DepositScorer {
   void row(std::uint32_t block, double score, bool unseen) { rows_.add(block, score, unseen && !nothing_simulated_); }
 
   const Campaign& campaign_;
+  std::span<const BlockRuns> runs_;
   const std::vector<bool>& ask_;
-  const std::size_t fewest_simulated_;
+  const ScoreOptions options_;
   const bool nothing_simulated_;
   std::vector<Places> simulated_;  // by block: its stops in the mapped region
   ScoreRows rows_;
@@ -211,9 +209,9 @@ PatternDistance pattern_distance(std::span<const Eigen::Vector2d> mapped, std::s
 }
 
 Score deposit_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
-                    std::size_t fewest_simulated) {
+                    const ScoreOptions& options) {
   TALUS_EXPECT(runs.empty() || runs.size() == campaign.blocks.size(), "each block has its runs");
-  return DepositScorer(campaign, runs, ask, fewest_simulated).result();
+  return DepositScorer(campaign, runs, ask, options).result();
 }
 
 DepositCheck check_deposits(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {

@@ -25,12 +25,6 @@ double mean_of_blocks(const Score& score) {
   return blocks.empty() ? kNotGiven : sum / static_cast<double>(blocks.size());
 }
 
-/// 0 if half of the trials of a block leave the terrain, 1 if all do.
-double most_gone(const BlockRuns& runs) {
-  const double left = runs.ends[static_cast<std::size_t>(End::Left)];
-  return std::max(0.0, 2.0 * left / runs.trials - 1.0);
-}
-
 /// Scores the rows of one campaign group by group.
 class Scorer {
  public:
@@ -232,7 +226,7 @@ class Scorer {
 
 Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
             const ScoreOptions& options) {
-  if (campaign.deposits != nullptr) return deposit_score(campaign, runs, ask, options.fewest_simulated);
+  if (campaign.deposits != nullptr) return deposit_score(campaign, runs, ask, options);
   return Scorer(campaign, runs, ask, options).result();
 }
 

@@ -8,6 +8,12 @@
 
 namespace talus {
 
+/// 0 if half of the trials of a block leave the terrain, 1 if all do.
+inline double most_gone(const BlockRuns& runs) {
+  const double left = runs.ends[static_cast<std::size_t>(End::Left)];
+  return std::max(0.0, 2.0 * left / runs.trials - 1.0);
+}
+
 /// Takes the rows of a score, group by group.
 class ScoreRows {
  public:

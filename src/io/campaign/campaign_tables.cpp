@@ -9,6 +9,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/sample.hpp"
 #include "talus/base/text.hpp"
+#include "talus/terrain/no_height.hpp"
 
 namespace talus::io {
 namespace {
@@ -144,9 +145,13 @@ class Tables {
                          {"id", "screen"});
     std::size_t doubled = 0;
     std::string first;
+    std::vector<bool> off_map;
+    for (const Screen& screen : campaign_.screens) off_map.push_back(is_off_map(screen));
     for (const Row& row : table.rows()) {
       MeasuredBlock& block = block_of_row(table, row);
       const std::size_t screen = screen_of(table, row);
+      if (off_map[screen])
+        table.refuse(row, "screen", "is a line off the DEM, where no simulated block gets to: must cross the DEM");
       Passage passage;
       passage.speed = table.number(row, "speed_ms", kSpeed).value_or(kNotGiven);
       passage.jump = table.number(row, "jump_height_m", kJump).value_or(kNotGiven);
@@ -159,6 +164,13 @@ class Tables {
     }
     if (doubled > 1) first += "; so it is in " + std::to_string(doubled - 1) + " more rows";
     if (doubled > 0) warnings_.push_back(first);
+  }
+
+  /// Whether a screen has no part on the DEM.
+  bool is_off_map(const Screen& screen) const {
+    WithoutHeight length;
+    for (const auto& line : screen.lines) add_line(length, campaign_.surface.heights(), line);
+    return length.whole > 0.0 && length.without >= length.whole;
   }
 
   std::size_t screen_of(const CsvTable& table, const Row& row) const {

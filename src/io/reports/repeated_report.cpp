@@ -66,6 +66,19 @@ std::string quick_folds_note(const DiagnosisRecord& record) {
          " (--no-quick-folds chooses anew)";
 }
 
+/// Warning of so few blocks, or so few trials, that the verdict means little. Empty where there are enough.
+std::string few_numbers_warning(const DiagnosisRecord& record) {
+  const std::size_t blocks = record.errors.empty() ? 0 : record.errors.front().after.blocks;
+  const std::size_t enough = record.options.rules.fewest_blocks;
+  if (blocks > 0 && blocks < enough)
+    return "only " + std::to_string(blocks) + " blocks are fitted: fewer than " + std::to_string(enough) +
+           " cannot show what a model lacks, and \"none\" says little";
+  const TrialsPerBlock usual, &asked = record.options.trials;
+  if (asked.search >= usual.search && asked.test >= usual.test) return "";
+  return "fewer trials than by default (--trials " + std::to_string(usual.search) + ", --test-trials " +
+         std::to_string(usual.test) + "): the verdict may change with more";
+}
+
 /// Warnings of what a costly diagnosis left out, with the flag that asks for it.
 std::vector<std::string> costly_warnings(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
@@ -156,6 +169,7 @@ bool choice_has_seen(const DiagnosisRecord& record) {
 std::vector<std::string> diagnosis_warnings(const DiagnosisRecord& record) {
   std::vector<std::string> warnings = costly_warnings(record);
   const Diagnosis& d = record.diagnosis;
+  if (const std::string few = few_numbers_warning(record); !few.empty()) warnings.push_back(few);
   if (const std::string far = far_ground_warning(d.base); !far.empty()) warnings.push_back(far);
   if (d.nested && d.nested->folds.splits_groups) warnings.emplace_back(kSplitGroups);
   if (!d.with_effects.model.zones.values.empty())

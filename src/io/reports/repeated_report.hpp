@@ -12,7 +12,8 @@ namespace talus::io {
 /// Warning of folds that split groups (`OuterFolds::splits_groups`).
 inline constexpr const char* kSplitGroups =
     "the folds split groups: a block is judged by a fit to others of its group, and the error out of fold may be too "
-    "low; give every fitting block a group, or fewer --folds (a group of more than half of the blocks is always split)";
+    "low; groups stay together where every fitting block has one, there are at least as many as --folds, and none has "
+    "more than half of the blocks";
 
 /// Warning of a ground whose fit ended far from its start: tests of place and instrument raise more false alarms there.
 /// Empty where it is near. docs/diagnosis-results.md.

@@ -77,13 +77,61 @@ Reduction skill_of(const Score& score, const Score& climatology, std::span<const
 }
 
 /// Number of blocks that were measured at rest, of which more than a quarter of the simulated trials leave the DEM. A
-/// fit holds them back only from a half on, so that it may end below it.
+/// fit holds them back only from a half on, so that it may end below it. Of mapped blocks more than half: other blocks
+/// of their sources may have left it.
 std::size_t blocks_that_leave(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
   std::size_t leaving = 0;
+  const std::uint32_t times = campaign.deposits == nullptr ? 4 : 2;
   for (std::size_t b = 0; b < runs.size(); ++b)
-    if (ask[b] && campaign.blocks[b].stop && 4 * runs[b].ends[static_cast<std::size_t>(End::Left)] > runs[b].trials)
+    if (ask[b] && campaign.blocks[b].stop && times * runs[b].ends[static_cast<std::size_t>(End::Left)] > runs[b].trials)
       ++leaving;
   return leaving;
+}
+
+/// Counts the asked blocks of which a quantity was measured; names it where no group of the score has this name.
+class Uncounted {
+ public:
+  Uncounted(const Campaign& campaign, const std::vector<bool>& ask, const Score& score)
+      : campaign_(campaign), ask_(ask), score_(score) {}
+
+  template <class Measured>
+  void look_for(const std::string& group, Measured measured) {
+    std::size_t blocks = 0;
+    for (std::size_t b = 0; b < campaign_.blocks.size(); ++b)
+      if (ask_[b] && measured(campaign_.blocks[b])) ++blocks;
+    if (blocks > 0 && std::ranges::count(score_.groups, group, &GroupScore::name) == 0)
+      names.push_back(group + " (" + std::to_string(blocks) + ")");
+  }
+
+  std::vector<std::string> names;  // with the number of blocks: "speed lower (3)"
+
+ private:
+  const Campaign& campaign_;
+  const std::vector<bool>& ask_;
+  const Score& score_;
+};
+
+/// Quantities that were measured of some of the asked blocks, but are no group of the score. Masses are not named: they
+/// count only where blocks broke.
+std::vector<std::string> measured_but_not_scored(const Campaign& campaign, const std::vector<bool>& ask,
+                                                 const Score& score) {
+  if (campaign.deposits != nullptr) return {};
+  Uncounted uncounted(campaign, ask, score);
+  uncounted.look_for("stop", [](const MeasuredBlock& b) { return b.stop.has_value(); });
+  for (std::size_t s = 0; s < campaign.screens.size(); ++s) {
+    const std::string& id = campaign.screens[s].id;
+    uncounted.look_for("crossed " + id, [s](const MeasuredBlock& b) { return b.passages[s].has_value(); });
+    for (const auto& [name, value] :
+         {std::pair{"speed ", &Passage::speed}, {"jump ", &Passage::jump}, {"spin ", &Passage::spin}})
+      uncounted.look_for(name + id, [s, member = value](const MeasuredBlock& b) {
+        return b.passages[s] && !std::isnan((*b.passages[s]).*member);
+      });
+  }
+  for (const auto& [name, value] : {std::pair{"sample speed", &Sample::speed}, {"sample spin", &Sample::spin}})
+    uncounted.look_for(name, [member = value](const MeasuredBlock& b) {
+      return std::ranges::any_of(b.samples, [member](const Sample& s) { return !std::isnan(s.*member); });
+    });
+  return std::move(uncounted.names);
 }
 
 }  // namespace
@@ -113,11 +161,12 @@ ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<c
   out.tail_interval = score_intervals(out.tail, clusters).total;
   out.tail_climatology = tail_score_of_climatology(campaign, ask, folds);
   out.coverage = coverage(campaign, runs, ask);
+  out.leaving = blocks_that_leave(campaign, runs, ask);
+  out.not_counted = measured_but_not_scored(campaign, ask, out.score);
   if (campaign.deposits != nullptr) {
     out.deposits = check_deposits(campaign, runs, ask);
     return out;
   }
-  out.leaving = blocks_that_leave(campaign, runs, ask);
   how.rule = ScoreRule::LogDensity;
   out.log_score = score(campaign, runs, ask, how);
   out.log_climatology = score_of_climatology(campaign, ask, how);
@@ -154,7 +203,7 @@ std::string skill_sentence(const ScoredRows& s) {
   if (!(s.skill.share > 0.0) && s.deposits) return rows + "no skill: " + errors;
   if (!(s.skill.share > 0.0))
     return rows + "no skill: " + errors + ": the measurements of the " + (s.rows == "fit" ? "other " : "") +
-           "fitting blocks, without any model, are as near";
+           "fitting blocks, without any model, are " + (s.skill.interval.high < 0.0 ? "nearer" : "as near");
   return rows + "skill " + with_decimals(100.0 * s.skill.share, 1) + " %" + interval + ": " + errors +
          (s.skill.interval.low > 0.0 ? "" : "; it may have no skill");
 }
@@ -175,7 +224,12 @@ std::vector<std::string> score_warnings(const ScoredRows& s) {
                          rows_in_words(s.rows) + " rows have fewer than " + std::to_string(kFewestSimulated) +
                          " simulated values and score as the climatology: the model seldom does there what was "
                          "measured, and the score says nothing of it (more trials may help)");
-  if (s.leaving > 0)
+  if (s.leaving > 0 && s.deposits)
+    warnings.push_back("more than half of the trials of " + std::to_string(s.leaving) + " of " +
+                       std::to_string(s.blocks) + " " + rows_in_words(s.rows) +
+                       " mapped blocks leave the DEM, and only those that stay are compared: the ground lets blocks go "
+                       "too far, or the DEM is too small (a fit then makes run-outs too short)");
+  else if (s.leaving > 0)
     warnings.push_back("more than a quarter of the trials leave the DEM of " + std::to_string(s.leaving) + " of " +
                        std::to_string(s.blocks) + " " + rows_in_words(s.rows) +
                        " blocks, though these came to rest on it: the ground lets blocks go too far, or the DEM is too "
@@ -191,6 +245,9 @@ std::string cut_short_line(double share, std::uint32_t most_vertices) {
 
 std::string judgement_lines(const ScoredRows& s) {
   std::string text;
+  if (!s.not_counted.empty())
+    text += rows_in_words(s.rows) + " rows: not scored, fewer than " + std::to_string(kFewestRows) +
+            " blocks, or values that do not differ: " + joined(s.not_counted) + "\n";
   for (const std::string& sentence : {skill_sentence(s), tail_sentence(s)})
     if (!sentence.empty()) text += sentence + "\n";
   for (const std::string& sentence : deposit_sentences(s)) text += sentence + "\n";
@@ -249,7 +306,8 @@ std::string score_json(const ScoreSettings& settings, std::span<const ScoredRows
                     {"climatology", climatology_json(s)},
                     {"tail", tail_json(s)},
                     {"coverage", json_of(s.coverage)},
-                    {"groups", groups}};
+                    {"groups", groups},
+                    {"not_scored", s.not_counted}};
     if (s.deposits) json[s.rows]["deposits"] = deposits_json(s);
   }
   return json_text(json);

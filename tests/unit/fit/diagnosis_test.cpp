@@ -224,6 +224,32 @@ TEST(ResidualTable, ThePOfACorrelationOfFewBlocksIsThatOfTheirOrders) {
   }
   EXPECT_EQ(rows, 1);
 }
+
+/// Eight rocks, released three times each: their mass is compared with the mean of the ranks of their releases, so that
+/// the p-value is that of the 8! orders above, not of 24 blocks. With five rocks nothing is said.
+TEST(ResidualTable, ARockCountsOnceAgainstItsMass) {
+  constexpr double kExact = 16.0 / 40320.0;
+  const std::vector<double> jumps{0.1, 0.2, 0.3, 0.5, 0.4, 0.6, 0.7, 0.8};
+  for (const std::size_t rocks : {8U, 5U}) {
+    const auto blocks = static_cast<std::uint32_t>(3 * rocks);
+    Campaign c = slope_campaign(blocks);
+    for (std::size_t b = 0; b < blocks; ++b) {
+      c.blocks[b].mass = 100.0 * static_cast<double>(b % rocks + 1);
+      c.blocks[b].rock = std::to_string(b % rocks);
+      c.blocks[b].passages[0] = Passage{kNotGiven, jumps[b % rocks], kNotGiven};
+    }
+    const auto runs = runs_with_jumps(blocks, 99, [t = 0](std::size_t) mutable { return 0.01 * (t++ % 99) + 0.005; });
+    int rows = 0;
+    for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), std::vector<bool>(blocks, true))) {
+      if (row.observable != "jump S1" || row.covariate != "mass") continue;
+      ++rows;
+      EXPECT_EQ(row.blocks, 8U);
+      EXPECT_NEAR(row.p_value, kExact, 5.0 * kExact / std::sqrt(50.0));
+    }
+    EXPECT_EQ(rows, rocks == 8 ? 1 : 0);
+  }
+}
+
 /// Three drawn sets, two effects; ranks by hand. The measured 0.02 is the second smallest of four by the first effect
 /// and 0.9 the largest by the second. Set 2 is the rarest by the first, set 0 by the second; set 1 is no rarer than 3
 /// of 4.

@@ -2,7 +2,7 @@
 """How often is `talus diagnose` right? Makes campaigns with the engine itself and diagnoses them.
 
   tools/scripts/studies/diagnosis_study.py [--talus build/release/talus] [--effects all] [--magnitudes 1,2,0.5] [--blocks 60,120]
-      [--none 20] [--null plain,scatter,grouped,outside] [--base-fits 1] [--trials 24] [--test-trials 100] [--most-effects 3]
+      [--none 20] [--null plain,scatter,grouped,outside] [--base-fits 1] [--again] [--trials 24] [--test-trials 100] [--most-effects 3]
       [--threads N] [--jobs 1] [--work DIR] [--seed 1] [-o study.csv]
 
 Each campaign has a slope of its own (length, steepness, a gully, bumps), three zones, blocks of many sizes and shapes, three
@@ -14,7 +14,8 @@ found, the model that made the data. Campaigns without an effect are of the kind
 stops, speeds, jumps and spins scatter 1.6 times as much in variance as trials of the model; `grouped`, six blocks a group,
 which share an error of the release of 6 m and a ground of their own (each parameter 15 % up or down); `outside`, a ground far
 from the start of the fit (theta_scale of talus and rock beyond 2.5 standard deviations of the prior). Printed for these: how
-often each family is below 1, 5 and 10 %, and how far the fitted ground lies from the true one (towards the prior). The same
+often each family is below 1, 5 and 10 %, and how far the fitted ground lies from the true one (towards the prior); with
+--again also for a second diagnosis, which starts from the ground that the first one fitted. The same
 engine makes and judges the data: this measures the statistics, not the physics. Campaigns that are finished, with the same
 seed, options and program, are not run again. A campaign takes one to eight minutes of one core. Results:
 docs/diagnosis-results.md, "The study".
@@ -205,15 +206,27 @@ def diagnosis_folder(o, folder):
     return f"{folder}/diagnosis-{o.trials}-{o.test_trials}-{o.most_effects}-{o.base_fits}"
 
 
-def diagnose(o, folder):
-    out = diagnosis_folder(o, folder)
+def families_of(found):
+    return {f["name"]: f["p_value"] for f in found["families"]}
+
+
+def diagnose_from(o, folder, out, start=()):
     if not os.path.exists(f"{out}/diagnosis.json"):
         talus(o, "diagnose", f"{folder}/campaign.toml", "-o", out, "--trials", o.trials, "--test-trials", o.test_trials,
-              "--most-effects", o.most_effects, "--base-fits", o.base_fits, "-q", "--overwrite",
+              "--most-effects", o.most_effects, "--base-fits", o.base_fits, "-q", "--overwrite", *start,
               *(["--threads", o.threads] if o.threads else []))
+    return read_json(f"{out}/diagnosis.json")
+
+
+def diagnose(o, folder):
+    out = diagnosis_folder(o, folder)
+    found = diagnose_from(o, folder, out)
+    if o.again:
+        again = diagnose_from(o, folder, out + "-again", ("--parameters", f"{out}/fitted.toml"))
+        found["again"] = families_of(again) | {"found": again["effect"]}
     truth = json.loads(talus(o, "score", f"{folder}/campaign.toml", "--parameters", f"{folder}/truth_model.toml", "--rows",
                              "holdout", "--trials", 200, "--json", "-q"))
-    return read_json(f"{out}/diagnosis.json"), truth["holdout"]
+    return found, truth["holdout"]
 
 
 def above_limit(found, effect, magnitude):
@@ -238,11 +251,12 @@ def one(o, effect, magnitude, count, k):
     e, headline = found["error"]["holdout"], found["error"]["headline"]
     large = [g["score"] for g in truth["groups"] if g["rows"] >= headline["fewest_rows_of_a_group"]]
     truth = truth["score"]
-    families = {f["name"]: f["p_value"] for f in found["families"]}
+    families, again = families_of(found), found.get("again", {})
     row = dict(effect=made, magnitude=magnitude, blocks=count, found=found["effect"], alike=" ".join(found["indistinguishable_from"]),
                p=found["rounds"][0]["p_value"], before=e["before"], after=e["after"], truth=truth,
                large_before=headline["before"], large_after=headline["after"], large_truth=sum(large) / len(large), seconds=found["times"]["cpu"],
                above_limit=above_limit(found, effect, magnitude), **{name: families.get(name) for name in FAMILIES},
+               **({f"again {name}": again.get(name) for name in ("found", *FAMILIES)} if again else {}),
                **pull(f"{diagnosis_folder(o, folder)}/fitted.toml", f"{folder}/truth_model.toml"))
     print(f"{made} x{magnitude:g}, {count} blocks, {k}: {row['found']} ({row['alike']}) p {row['p']:.4f}, held-out {row['before']:.3f} -> "
           f"{row['after']:.3f}, truth {truth:.3f}; groups of ten rows and more {row['large_before']:.3f} -> {row['large_after']:.3f}, truth "
@@ -274,7 +288,9 @@ def report(table):
         of = [r for r in none if r["effect"] == kind]
         alarms = sum(r["found"] not in ("none", "unexplained") for r in of)
         print(f"\n{kind}: false alarms: {alarms} of {len(of)}, unexplained: {sum(r['found'] == 'unexplained' for r in of)}")
-        for name in FAMILIES:
+        if "again found" in of[0]:
+            print(f"  again from that ground: false alarms: {sum(r['again found'] not in ('none', 'unexplained') for r in of)}")
+        for name in [name for name in of[0] if name.removeprefix("again ") in FAMILIES]:
             p = np.array([r[name] for r in of if r[name] is not None])
             if len(p):
                 print(f"  {name}: p below 0.01, 0.05, 0.10 in {', '.join(f'{100 * np.mean(p <= a):.0f} %' for a in (0.01, 0.05, 0.1))} of {len(p)}")
@@ -306,6 +322,7 @@ def main():
     parser.add_argument("--none", type=int, default=20)
     parser.add_argument("--null", type=list_of(str), default=",".join(NULLS), help="kinds of campaigns without an effect")
     parser.add_argument("--base-fits", type=int, default=1)
+    parser.add_argument("--again", action="store_true", help="diagnose again, from the ground that was fitted")
     parser.add_argument("--trials", type=int, default=24)
     parser.add_argument("--test-trials", type=int, default=100)
     parser.add_argument("--most-effects", type=int, default=3)

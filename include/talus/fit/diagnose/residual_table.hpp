@@ -9,12 +9,12 @@ namespace talus {
 struct ResidualRow {
   std::string observable;  ///< "runout", "speed S1", ...
   std::string covariate;   ///< "mean", "spread", "mass", "L1/L2", "L1/L3", "day", "release height", "east", "north"
-  double statistic;  ///< of "mean" the mean of z, less the expected one; of "spread" its variance over the expected
-                     ///< one; of a crossing a standard normal number, positive where more cross than should; else
-                     ///< Spearman's rank correlation (ResidualSpace::rank_of_measured)
-  double p_value;    ///< of this row alone, two-sided
-  double corrected;  ///< for the number of rows (Holm)
-  std::size_t blocks;
+  double statistic;    ///< of "mean" the mean of z, less the expected one; of "spread" its variance over the expected
+                       ///< one; of a crossing a standard normal number, positive where more cross than should; else
+                       ///< Spearman's rank correlation (ResidualSpace::rank_of_measured)
+  double p_value;      ///< of this row alone, two-sided
+  double corrected;    ///< for the number of rows (Holm)
+  std::size_t blocks;  ///< where rocks were released more than once, of their properties: rocks
 };
 
 /// A property of the blocks on which a residual may depend.
@@ -22,10 +22,14 @@ struct Property {
   const char* name;                                ///< as in ResidualRow::covariate
   const char* unit;                                ///< empty: none
   std::function<double(const MeasuredBlock&)> of;  ///< NaN: not known of this block
+  bool of_rock = false;                            ///< the same in each release of a rock
 };
 const std::vector<Property>& properties();
 
-/// Every observable against every property, most significant first. Rows with fewer than ten blocks are left out.
+/// Every observable against every property, most significant first. Rows with fewer than ten blocks are left out. A
+/// rock that was released more than once (docs/diagnosis-method.md, "Rocks") counts once against its mass and shape,
+/// with the means of its releases, and there must be six rocks. Crossings are tested against these only where most
+/// rocks were released once.
 std::vector<ResidualRow> residual_table(const Campaign& campaign, const ResidualSpace& space,
                                         const std::vector<bool>& rows, const DiagnosisRules& rules = {});
 

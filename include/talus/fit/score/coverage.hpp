@@ -49,8 +49,10 @@ struct Coverage {
 double random_rank(std::span<const double> simulated, double measured, double draw);
 
 /// The calibration of the run-out (plan distance from the release to the stop), and of speed, jump and spin at the
-/// first crossing of each screen, of the asked blocks. Left out: observables with fewer than five ranks; a block with
-/// fewer than ten simulated values.
+/// first crossing of each screen, of the asked blocks. If all blocks of the campaign came to rest, a trial
+/// that left the terrain counts as a run-out beyond the measured one; else, and of mapped blocks, it is left out, as
+/// blocks that left are missing among the measured. Left out: observables with fewer than five ranks; a block
+/// with fewer than ten simulated values.
 ///
 /// @param runs  by block of the campaign; those asked for must have been simulated
 std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,

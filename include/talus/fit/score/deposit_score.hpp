@@ -9,11 +9,13 @@ namespace talus {
 ///
 /// @param runs  empty: blocks that lie anywhere in the region stand in for simulated ones, which is what scores without
 ///              any knowledge. They stand in for too few simulated stops, too, so that no model gains by leaving the
-///              mapped region
+///              mapped region. A model that sends most blocks off the map could gain all the same, by those that stay:
+///              see ScoreOptions::leaving_costs
+/// @param options  the rule and the folds are not used
 ///
 /// `score` and `score_of_climatology` call it for a campaign with deposits.
 Score deposit_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
-                    std::size_t fewest_simulated);
+                    const ScoreOptions& options);
 
 /// Spread of the angles below which they are not scored [rad]: on a plane below its sources all angles are alike.
 inline constexpr double kLeastAngleSpread = 0.0087;  // half a degree

@@ -66,7 +66,7 @@ struct ScoreOptions {
   bool own_value_too = true;
   /// The row of a place of rest rises if most trials of its block leave the terrain: by kGone if all do, by nothing if
   /// half do. Not so in score.py. Without it a fit would do well to send the blocks off the map: a row without
-  /// simulated stops scores as the climatology.
+  /// simulated stops scores as the climatology. So rises the row of the place of a mapped block.
   bool leaving_costs = false;
 };
 

@@ -46,8 +46,8 @@ bool choice_has_seen(const DiagnosisRecord& record);
 /// The verdict over all base fits, the log score and what the folds found, as lines for the terminal.
 std::string repeated_lines(const DiagnosisRecord& record);
 
-/// Warnings of what a costly diagnosis left out (`DiagnosisRules::enough`), with the flag that asks for it; of a ground
-/// far from its start; of folds that split groups; of a model that no file can hold.
+/// Warnings of what a costly diagnosis left out (`DiagnosisRules::enough`), with the flag that asks for it; of few
+/// blocks or trials; of a ground far from its start; of folds that split groups; of a model that no file can hold.
 std::vector<std::string> diagnosis_warnings(const DiagnosisRecord& record);
 
 /// Names of the groups of fewer than ten unseen rows, with their rows: they stay out of the headline.

@@ -27,8 +27,9 @@ struct ScoredRows {
   std::vector<Coverage> coverage;
   Score log_score, log_climatology;      ///< minus log densities [nats]
   std::optional<DepositCheck> deposits;  ///< of blocks that were mapped where they lie
-  std::size_t leaving =
-      0;  ///< blocks measured at rest of which more than a quarter of the trials leave the DEM; not of mapped ones
+  /// Blocks at rest of which more than a quarter of the trials leave the DEM; of mapped ones more than half.
+  std::size_t leaving = 0;
+  std::vector<std::string> not_counted;  ///< quantities that were measured, but too seldom to be scored, with numbers
 };
 
 /// The score of the model before and after a fit, on rows of one kind.

@@ -124,6 +124,28 @@ TEST(CoverageTest, IsTheExactBinomialOne) {
   EXPECT_NEAR(coverage_of.below[2].p_value, 2.0 * 0.35848592, 1e-7);
 }
 
+/// All blocks came to rest; the DEM of the model ends where 80 % of the trials of a block have stopped. What left went
+/// farther: no rank below that of the end changes. Where a block may have left, too, only those that stay are compared.
+TEST_F(CoverageOf, TrialsThatLeftWentFarther) {
+  const Coverage whole = coverage(campaign_, runs_, all_).front();
+  for (std::size_t b = 0; b < kBlocks; ++b) {
+    const std::vector<double> runouts = runouts_of(campaign_, campaign_.blocks[b], runs_[b]);
+    std::vector<double> sorted = runouts;
+    std::ranges::sort(sorted);
+    for (std::size_t t = 0; t < runouts.size(); ++t)
+      if (runouts[t] > sorted[48]) {
+        runs_[b].x[t] = runs_[b].y[t] = kNotGiven;
+        ++runs_[b].ends[static_cast<std::size_t>(End::Left)];
+      }
+  }
+  const Coverage cut = coverage(campaign_, runs_, all_).front();
+  EXPECT_EQ(cut.rows, whole.rows);
+  for (const std::size_t share : {0U, 1U}) EXPECT_EQ(cut.below[share].count, whole.below[share].count);
+  for (std::size_t rank = 0; rank < 7; ++rank) EXPECT_EQ(cut.ranks[rank], whole.ranks[rank]);
+  campaign_.blocks[0].stop.reset();
+  EXPECT_LT(coverage(campaign_, runs_, all_).front().below[1].count + 5, whole.below[1].count);
+}
+
 /// A block of which too few trials stopped has no rank.
 TEST_F(CoverageOf, ABlockWithFewValuesIsLeftOut) {
   std::fill_n(runs_[3].x.begin(), 51, kNotGiven);

@@ -216,6 +216,26 @@ TEST(DepositScore, NoModelGainsByLeavingTheMap) {
   EXPECT_LT(score(c, right, all).total, 0.9 * nothing.total);
 }
 
+/// In what a fit minimises, blocks that most trials send off the map cost as those of known release do (`Scores`): a
+/// share above a half, times four, in the rows of their places. Reported scores do not change.
+TEST(DepositScore, AFitGainsNothingBySendingMostBlocksOffTheMap) {
+  const Campaign c = mapped_on_slope(30, model_of_slope(), 7, 100.0);
+  const std::vector<bool> all(30, true);
+  const auto stay = observe(c, model_of_slope(), trials(60));
+  const Score before = score(c, stay, all, fit_scoring());
+  for (const auto& [left, rise] : {std::pair{30U, 0.0}, {45U, 2.0}, {60U, 4.0}}) {
+    auto runs = stay;
+    runs[6].ends[static_cast<std::size_t>(End::Left)] = left;
+    const Score after = score(c, runs, all, fit_scoring());
+    ASSERT_EQ(after.rows.size(), before.rows.size());
+    for (std::size_t r = 0; r < after.rows.size(); ++r) {
+      const bool place = after.groups[after.rows[r].group].name != "run-out angle" && after.rows[r].block == 6;
+      EXPECT_NEAR(after.rows[r].score - before.rows[r].score, place ? rise : 0.0, 1e-12);
+    }
+    EXPECT_DOUBLE_EQ(score(c, runs, all).total, score(c, stay, all).total);
+  }
+}
+
 /// If the map is a draw of the model the p-value is uniform: its share below 0.2 is 0.2.
 TEST(DepositCheck, PValuesOfTheRightModelAreUniform) {
   int low = 0;
