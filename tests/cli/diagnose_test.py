@@ -22,6 +22,20 @@ class Diagnose(Case):
         self.fails(2, "nowhere.toml", arguments=("diagnose", self.path("nowhere.toml"), "-o", self.path("out")))
         self.assertFalse(os.path.exists(self.path("out")))
 
+    def test_the_start_is_not_replaced_by_the_results(self):
+        os.makedirs(self.path("out"))
+        start = self.write("out/fitted.toml", '[ground]\ndefault = "upper-talus-3d"\n')
+        self.write("out/diagnosis.json", "{}")
+        for command in ("diagnose", "calibrate"):
+            self.fails(2, "out/fitted.toml", arguments=(
+                command, f"{ELM}/campaign.toml", "--parameters", start, "-o", self.path("out"), "--overwrite"))
+        self.assertTrue(os.path.exists(start))
+
+    def test_a_start_at_zero_is_refused(self):  # it was fitted from 0.01
+        self.write("start.toml", '[ground.zones.default]\npreset = "upper-talus-3d"\npsi_scale = 0\n')
+        self.fails(2, "psi_scale", arguments=("diagnose", f"{CAMPAIGNS}/authume/campaign.toml", "--parameters",
+                                              self.path("start.toml"), "-o", self.path("out")))
+
     def test_a_start_with_effects_is_refused(self):
         """`diagnose` would look for an effect that the ground has already."""
         self.write("start.toml", '[ground]\ndefault = "upper-talus-3d"\n[effects.air-drag]\ncoefficient = 0.8\n')
@@ -98,6 +112,7 @@ class OfOthers(Loop):
         found = self.diagnose(f"{CAMPAIGNS}/authume/campaign.toml", *FEW, "--fit", "theta_scale,En50", "--parameters", start, untested={"wet-ground", "instrument-bias"})  # 24 of its 48 blocks are fitted: a third of 72
         self.assertEqual(found["trials_per_block"], {"search": 30, "test": 90, "compare": 600})
         self.assertGreater(len(found["residual"]), 3)
+        self.assertEqual([i["path"] for i in found["inputs"] if i["role"] == "model"], [start])
         self.assertEqual(found["start_model"], start)  # what is not fitted stays as the start has it
         self.assertIn("psi_scale = 0.85\n", self.read_text(self.path("out/fitted.toml")))
 

@@ -102,9 +102,9 @@ TEST(Scored, NamesWhatWasMeasuredTooSeldom) {
     runs[b].screens = {{runs[b].x, runs[b].x, runs[b].x}};
   }
   const ScoredRows rows = scored("fit", campaign, runs, std::vector<bool>(12, true));
-  EXPECT_EQ(rows.not_counted, (std::vector<std::string>{"crossed S1 (4)", "speed S1 (4)"}));
-  EXPECT_EQ(judgement_lines(rows).find("fitting rows: not scored, fewer than 5 blocks, or values that do not differ: "
-                                       "crossed S1 (4), speed S1 (4)\n"),
+  EXPECT_EQ(rows.not_counted, (std::vector<std::string>{"crossed S1 (4 of 12)", "speed S1 (4 of 12)"}));
+  EXPECT_EQ(judgement_lines(rows).find("fitting rows: too few, or too much alike, to be scored: "
+                                       "crossed S1 (4 of 12), speed S1 (4 of 12) blocks\n"),
             0U);
 }
 

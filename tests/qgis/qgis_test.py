@@ -919,6 +919,14 @@ class FromPython(Case):
             self.assertFalse(good)
             self.assertEqual(message, f"{key}: no such parameter of talus:run" + near)
 
+    def test_a_given_frequency_counts_instead_of_the_field(self):
+        """The cliffs of the valley have a field frequency: the program takes one of the two."""
+        log = Log()
+        _, good = self.run_algorithm("check", self.inputs(FREQUENCY=3.0, WIDTH=10), log)
+        self.assertTrue(good, log.textLog())
+        self.assertIn("a field frequency of the sources is not read", log.textLog())
+        self.assertIn("WIDTH: no such parameter of talus:check; it is not used", log.textLog())
+
     def test_a_run_that_is_done_is_loaded_when_it_is_resumed(self):
         self.run_algorithm("run", self.inputs())
         long_ago = time.time() - 3600.0

@@ -82,6 +82,7 @@ int calibrate(const Options& options) {
   c.start_name = options.parameters.empty() ? std::string(talus::kDefaultPreset) : options.parameters;
   std::vector<std::string> of_start;
   c.start = start_model(options.parameters, campaign, of_start);
+  take_start(options.parameters, folder, c);
   for (const std::string& warning : of_start) warn(options, c, warning);
   choose_parameters(campaign, options.fit, c);
   const std::vector<bool> rows = talus::fitting_rows(campaign);

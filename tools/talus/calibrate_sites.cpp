@@ -97,6 +97,7 @@ int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how
   Progress progress(Progress::mode_of(command.quiet, command.progress), 0, "fit");
   SitesFit work(command, opened, progress, c);
   work.choose(start, fit);
+  take_start(start, opened.folder, c);
   const std::size_t together = share.empty() ? 1 : opened.sites.size();
   for (std::size_t i = 0; i < opened.sites.size(); i += together) work.fit(i, together);
   talus::ObserveOptions unseen{kScoreTrials, how.seed, talus::kUnseen, how.threads, {}, [] { return !interrupted(); }};

@@ -4,6 +4,7 @@
 
 #include "talus/base/error.hpp"
 #include "talus/fit/score/score.hpp"
+#include "talus/io/campaign/model_file.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
 void require_measurements(const std::string& path, const talus::Campaign& campaign) {
@@ -62,6 +63,12 @@ std::vector<talus::io::LoadedCampaign> read_campaigns(const CampaignCommand& com
 void warn(const CampaignCommand& command, talus::io::FitRecord& record, const std::string& warning) {
   if (!command.quiet) say("warning", warning);
   record.warnings.push_back(warning);
+}
+
+void take_start(const std::string& file, const talus::io::OutputFolder& folder, talus::io::FitRecord& record) {
+  if (file.empty()) return;
+  folder.protect(file);
+  record.inputs.push_back(talus::io::model_input(file));
 }
 
 void warn_of_scores(const CampaignCommand& command, talus::io::FitRecord& record, const talus::io::ScoredRows& scored,

@@ -30,6 +30,10 @@ void require_releases(const std::string& path, const talus::Campaign& campaign);
 /// Prints a warning, unless the command is quiet, and adds it to those of the record.
 void warn(const CampaignCommand& command, talus::io::FitRecord& record, const std::string& warning);
 
+/// Takes the file of a model from which a fit starts among the inputs of a record. Throws InputError if it lies in the
+/// folder that the results replace.
+void take_start(const std::string& file, const talus::io::OutputFolder& folder, talus::io::FitRecord& record);
+
 /// Warns of the groups in which a fitted model scores as the climatology, where a search can hide, and of the
 /// quantities that it scatters too much or too little.
 /// @param of  of several campaigns, the one that it was fitted to: "south: "

@@ -121,7 +121,11 @@ int diagnose(const Options& options) {
   record.options = options.how;
   choose_folds(options, campaign, record.options);
   std::vector<std::string> of_start;
-  const talus::Model ground = start_ground(options.parameters, campaign, of_start);
+  const talus::Model ground = start_ground(options.parameters, campaign, record.options.keys, of_start);
+  take_start(options.parameters, opened.folder, record);
+  if (!options.parameters.empty() && record.options.nested)
+    of_start.emplace_back(
+        "the error out of fold is one of unseen rows only if the start (--parameters) was not fitted to these rows");
   for (const std::string& warning : of_start) warn(options, record, warning);
   record.start_name = options.parameters.empty() ? std::string(talus::kDefaultPreset) : options.parameters;
   Progress progress(Progress::mode_of(options.quiet, options.progress), 0, "diagnose");
@@ -146,12 +150,14 @@ int diagnose(const Options& options) {
 }  // namespace
 
 talus::Model start_ground(const std::string& file, const talus::Campaign& campaign,
-                          std::vector<std::string>& warnings) {
+                          const std::vector<std::string>& keys, std::vector<std::string>& warnings) {
   talus::Model model = start_model(file, campaign, warnings);
   if (model.effects.any() || !model.barriers.empty() || !model.bias.empty())
     throw talus::InputError("flag --parameters = '" + file +
                             "': has effects, barriers or a bias of instruments, must be ground alone: diagnose looks "
                             "for the rest itself; leave out [effects.*], [barriers] and [[instrument_bias]]");
+  const std::vector<bool> all(campaign.zone_names.size(), true);
+  talus::check_start(talus::ground_parameters(campaign, model, keys, all), model);
   return model;
 }
 

@@ -47,9 +47,10 @@ int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOption
   std::vector<talus::Model> grounds;
   for (const talus::Site& site : opened.sites) {
     std::vector<std::string> warnings;
-    grounds.push_back(start_ground(start, *site.campaign, warnings));
+    grounds.push_back(start_ground(start, *site.campaign, how.keys, warnings));
     for (const std::string& warning : warnings) warn(command, record, site.name + ": " + warning);
   }
+  take_start(start, opened.folder, record);
   try {
     record.diagnosis = talus::diagnose_sites(opened.sites, grounds, record.options);
   } catch (const talus::FitInterrupted&) {

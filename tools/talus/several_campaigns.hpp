@@ -38,13 +38,17 @@ int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how
                     const std::vector<std::string>& fit, const std::vector<std::string>& share);
 int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOptions& how, const std::string& start);
 
+/// The ground of a file, from which the fits of `diagnose` start; without a file the default preset. Throws InputError
+/// where the model has more than its ground, and where one of the fitted parameters starts at zero.
+///
+/// @param keys  of the parameters that are fitted
+talus::Model start_ground(const std::string& file, const talus::Campaign& campaign,
+                          const std::vector<std::string>& keys, std::vector<std::string>& warnings);
+
 // Steps of `calibrate` for one campaign, or each of several.
 
 /// The model of a file, from which a fit starts; without a file the default preset.
 talus::Model start_model(const std::string& file, const talus::Campaign& campaign, std::vector<std::string>& warnings);
-
-/// The same for `diagnose`. Throws InputError where the model has more than its ground.
-talus::Model start_ground(const std::string& file, const talus::Campaign& campaign, std::vector<std::string>& warnings);
 
 /// Chooses what is fitted: the asked parameters of the zones that simulated paths touch, then the asked numbers of
 /// effects.

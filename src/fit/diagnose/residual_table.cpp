@@ -128,12 +128,19 @@ void add_moments(std::vector<ResidualRow>& table, const std::string& name, const
   table.push_back({name, "spread", share, two_sided(tail), 1.0, z.size()});
 }
 
-/// The mean over the releases of each rock. @param rocks  of each value, numbered from 0
+/// Number of the releases of each rock. @param rocks  of each block, numbered from 0
+std::vector<double> releases_of(std::span<const std::size_t> rocks) {
+  std::vector<double> releases(std::ranges::max(rocks) + 1, 0.0);
+  for (const std::size_t rock : rocks) releases[rock] += 1.0;
+  return releases;
+}
+
+/// The mean of a value over the releases of each rock.
 std::vector<double> means_by(std::span<const std::size_t> rocks, std::span<const double> values) {
-  std::vector<double> sums(std::ranges::max(rocks) + 1, 0.0), releases = sums;
-  for (std::size_t i = 0; i < rocks.size(); ++i) sums[rocks[i]] += values[i], releases[rocks[i]] += 1.0;
-  for (std::size_t rock = 0; rock < sums.size(); ++rock) sums[rock] /= releases[rock];
-  return sums;
+  const std::vector<double> releases = releases_of(rocks);
+  std::vector<double> means(releases.size(), 0.0);
+  for (std::size_t i = 0; i < rocks.size(); ++i) means[rocks[i]] += values[i] / releases[rocks[i]];
+  return means;
 }
 
 /// The used blocks in the order of their streams: the permutations must not depend on the order of the file.
@@ -210,10 +217,11 @@ std::vector<ResidualRow> residual_table(const Campaign& campaign, const Residual
       if (of.size() < rules.fewest_blocks || std::ranges::min(of) == std::ranges::max(of)) continue;
       if (property.of_rock) {
         const std::vector<std::size_t> rocks = rocks_of(campaign, known);
-        const std::size_t count = std::ranges::max(rocks) + 1;
-        const bool again = count < known.size();  // a rock was released more than once
-        if (again && count < rules.fewest_rocks) continue;
-        if (crossing && 2 * count <= known.size()) continue;  // the test of crossings takes blocks for independent
+        const std::vector<double> releases = releases_of(rocks);
+        const auto once = static_cast<std::size_t>(std::ranges::count(releases, 1.0));
+        const bool again = once < releases.size();  // a rock was released more than once
+        if (again && releases.size() < rules.fewest_rocks) continue;
+        if (crossing && 2 * once < known.size()) continue;  // the test of crossings takes blocks for independent
         if (again && !crossing) rank = means_by(rocks, rank), of = means_by(rocks, of);
       }
       if (crossing)

@@ -70,6 +70,10 @@ class DepositScorer {
   const Places& anywhere(const MeasuredBlock& block) const {
     return campaign_.deposits->anywhere[region_at(*campaign_.deposits, *block.stop)];
   }
+  /// Rise of the score of a block that most trials send off the DEM.
+  double gone(std::uint32_t b) const {
+    return options_.leaving_costs && !nothing_simulated_ ? kGone * most_gone(runs_[b]) : 0.0;
+  }
   bool too_few(std::size_t simulated) const { return simulated < options_.fewest_simulated; }
 
   void places(std::size_t number) {
@@ -83,8 +87,7 @@ class DepositScorer {
       const MeasuredBlock& block = campaign_.blocks[b];
       if (!ask_[b] || class_of(campaign_, block) != number) continue;
       const bool unseen = too_few(simulated_[b].size());
-      const double gone = options_.leaving_costs && !nothing_simulated_ ? kGone * most_gone(runs_[b]) : 0.0;
-      row(b, fair_energy_score(unseen ? anywhere(block) : simulated_[b], *block.stop) / spread + gone, unseen);
+      row(b, fair_energy_score(unseen ? anywhere(block) : simulated_[b], *block.stop) / spread + gone(b), unseen);
     }
     rows_.close(class_name(*campaign_.deposits, number));
   }
@@ -97,6 +100,7 @@ class DepositScorer {
     if (measured.size() < kFewestRows) return;
     const double spread = std::sqrt(variance_of(measured));
     if (!(spread >= kLeastAngleSpread)) return;
+    const bool alone = rows_.empty();  // no class of size has a group
     for (std::uint32_t b = 0; b < campaign_.blocks.size(); ++b) {
       const MeasuredBlock& block = campaign_.blocks[b];
       const double angle = ask_[b] ? run_out(campaign_, *block.stop).angle : kNotGiven;
@@ -104,7 +108,7 @@ class DepositScorer {
       std::vector<double> values = angles_of(campaign_, simulated_[b]);
       const bool unseen = too_few(values.size());
       if (unseen) values = angles_of(campaign_, anywhere(block));
-      row(b, fair_crps(values, angle) / spread, unseen);
+      row(b, fair_crps(values, angle) / spread + (alone ? gone(b) : 0.0), unseen);
     }
     rows_.close("run-out angle");
   }

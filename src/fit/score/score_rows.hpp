@@ -25,6 +25,8 @@ class ScoreRows {
     rows_.push_back({group, block, score + kCutShort * cut_short(block), unseen});
   }
 
+  bool empty() const { return score_.groups.empty(); }
+
   /// Ends a group; with too few rows it is left out.
   void close(const std::string& name) {
     if (rows_.size() >= kFewestRows) {

@@ -1,8 +1,10 @@
 #include "talus/io/campaign/model_file.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 
+#include "io/files/checksum.hpp"
 #include "io/scenario/barrier_keys.hpp"
 #include "io/scenario/fitted_on.hpp"
 #include "io/scenario/scenario_flags.hpp"
@@ -130,6 +132,10 @@ void warn_of_undescribed_zones(const ScenarioSpec& spec, const Campaign& campaig
 }
 
 }  // namespace
+
+InputFile model_input(const std::string& path) {
+  return recorded_input("model", std::filesystem::absolute(path).lexically_normal().string());
+}
 
 Model read_model(const std::string& path, const Campaign& campaign, std::vector<std::string>* warnings) {
   ScenarioSpec spec;

@@ -48,9 +48,10 @@ bool ends_with(const std::string& path, const std::string& end) {
 
 /// How to name a file within an archive; empty if the path is none.
 std::string archive_hint(const std::string& path) {
-  const char* reader = ends_with(path, ".zip")                              ? "/vsizip/"
-                       : ends_with(path, ".tar") || ends_with(path, ".tgz") ? "/vsitar/"
-                                                                            : nullptr;
+  if (path.starts_with("/vsi")) return "";
+  const char* reader = ends_with(path, ".zip")                                                            ? "/vsizip/"
+                       : ends_with(path, ".tar") || ends_with(path, ".tgz") || ends_with(path, ".tar.gz") ? "/vsitar/"
+                                                                                                          : nullptr;
   return reader == nullptr ? "" : "; a file in an archive is named " + std::string(reader) + path + "/FILE";
 }
 

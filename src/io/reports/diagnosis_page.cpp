@@ -258,12 +258,19 @@ Markup sentence(const DiagnosisRound& round, double level) {
   return text;
 }
 
+/// The warnings, on the first screen: some of them decide whether the verdict can be used.
+Markup warning_lines(const DiagnosisRecord& record) {
+  Markup html;
+  for (const std::string& warning : record.warnings) html += "<p><b>Warning:</b> "_html + warning + "</p>\n";
+  return html;
+}
+
 }  // namespace
 
 std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
   Markup html =
-      summary_html(record) + plots(campaign, d, record.options.rules, 1) +
+      summary_html(record) + warning_lines(record) + plots(campaign, d, record.options.rules, 1) +
       "<p>Each point is a block; z is where its measurement lies among what the model simulates for it, as a standard "
       "normal number. Grey: 95 % of the points of a right model.</p>\n<h2>Rounds</h2>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i) {
@@ -275,7 +282,6 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
   if (const std::string undecided = undecided_text(d.stability); !undecided.empty())
     html += "<p><b>The first round is "_html + undecided + "</b>: independent base fits differ.</p>\n";
   html += errors_html(record) + repeated_html(record);
-  for (const std::string& warning : record.warnings) html += "<p>Warning: "_html + warning + "</p>\n";
   html += spread_html(record);
   html +=
       "<h2>Families</h2>\n<p>Effects that leave the same kind of trace are tested together, by one test of few degrees "

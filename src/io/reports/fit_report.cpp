@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coverage_report.hpp"
 #include "deposit_report.hpp"
 #include "evidence.hpp"
 #include "markup.hpp"
@@ -135,7 +136,9 @@ std::string error_lines(const Calibration& c) {
             with_decimals(e.after.score.total, 3) + "** | **" + with_decimals(e.after.climatology.total, 3) + "** | " +
             std::to_string(e.after.score.rows.size()) + " |\n\n";
     text += "The fit lowers the error by " + with_decimals(100.0 * e.reduction.share, 1) +
-            " % (95 % interval over the blocks: " + with_decimals(100.0 * e.reduction.interval.low, 1) + " to " +
+            " % (95 % interval over the " +
+            (e.clusters.given && e.clusters.count < e.after.blocks ? "groups" : "blocks") + ": " +
+            with_decimals(100.0 * e.reduction.interval.low, 1) + " to " +
             with_decimals(100.0 * e.reduction.interval.high, 1) + " %).\n\n" + judgement_markdown(e, "ranks.svg");
   }
   return text;

@@ -99,7 +99,7 @@ std::vector<std::string> costly_warnings(const DiagnosisRecord& record) {
 
 }  // namespace
 
-std::string far_ground_warning(const FittedModel& base) {
+std::string far_ground_warning(const FittedModel& base, const std::string& way_out) {
   constexpr double kFar = 1.5;  // standard deviations of the prior: in the study false alarms were more frequent beyond
   std::string far;
   for (Eigen::Index i = 0; i < base.z.size(); ++i)
@@ -108,9 +108,8 @@ std::string far_ground_warning(const FittedModel& base) {
              with_decimals(std::abs(base.z[i]), 1);
   if (far.empty()) return "";
   return "the fitted ground is far from its start (" + far +
-         " standard deviations of the prior), which holds it back: place and instrument may be blamed falsely; "
-         "diagnose "
-         "again from there (--parameters with this fitted.toml) and compare";
+         " standard deviations of the prior), which holds it back: place and instrument may be blamed falsely; " +
+         way_out;
 }
 
 std::string folds_text(const NestedValidation& nested) {
@@ -170,7 +169,8 @@ std::vector<std::string> diagnosis_warnings(const DiagnosisRecord& record) {
   std::vector<std::string> warnings = costly_warnings(record);
   const Diagnosis& d = record.diagnosis;
   if (const std::string few = few_numbers_warning(record); !few.empty()) warnings.push_back(few);
-  if (const std::string far = far_ground_warning(d.base); !far.empty()) warnings.push_back(far);
+  const std::string again = "see whether a diagnosis from there says the same (--parameters with this fitted.toml)";
+  if (const std::string far = far_ground_warning(d.base, again); !far.empty()) warnings.push_back(far);
   if (d.nested && d.nested->folds.splits_groups) warnings.emplace_back(kSplitGroups);
   if (!d.with_effects.model.zones.values.empty())
     warnings.push_back(

@@ -17,7 +17,9 @@ inline constexpr const char* kSplitGroups =
 
 /// Warning of a ground whose fit ended far from its start: tests of place and instrument raise more false alarms there.
 /// Empty where it is near. docs/diagnosis-results.md.
-std::string far_ground_warning(const FittedModel& base);
+///
+/// @param way_out  what to do
+std::string far_ground_warning(const FittedModel& base, const std::string& way_out);
 
 /// Scores the blocks that were simulated out of their folds: rows "out-of-fold".
 BeforeAfter out_of_fold_rows(const Campaign& campaign, const NestedValidation& nested);

@@ -16,7 +16,7 @@ struct ObjectsPart {
   struct Object {
     std::string name, sources;
     double frequency = 0.0, low = 0.0, high = 0.0;  ///< [1/year]
-    std::vector<std::string> years;  ///< return period by threshold, with its bounds [years], in words
+    std::vector<std::string> years;                 ///< return period by threshold, with its bounds [years], in words
     std::vector<Point> curve;
   };
   std::vector<std::string> thresholds;  ///< [kJ]

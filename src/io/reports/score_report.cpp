@@ -100,10 +100,11 @@ class Uncounted {
     for (std::size_t b = 0; b < campaign_.blocks.size(); ++b)
       if (ask_[b] && measured(campaign_.blocks[b])) ++blocks;
     if (blocks > 0 && std::ranges::count(score_.groups, group, &GroupScore::name) == 0)
-      names.push_back(group + " (" + std::to_string(blocks) + ")");
+      names.push_back(group + " (" + std::to_string(blocks) + " of " + std::to_string(std::ranges::count(ask_, true)) +
+                      ")");
   }
 
-  std::vector<std::string> names;  // with the number of blocks: "speed lower (3)"
+  std::vector<std::string> names;  // with the number of blocks: "speed lower (3 of 20)"
 
  private:
   const Campaign& campaign_;
@@ -246,8 +247,8 @@ std::string cut_short_line(double share, std::uint32_t most_vertices) {
 std::string judgement_lines(const ScoredRows& s) {
   std::string text;
   if (!s.not_counted.empty())
-    text += rows_in_words(s.rows) + " rows: not scored, fewer than " + std::to_string(kFewestRows) +
-            " blocks, or values that do not differ: " + joined(s.not_counted) + "\n";
+    text += rows_in_words(s.rows) + " rows: too few, or too much alike, to be scored: " + joined(s.not_counted) +
+            " blocks\n";
   for (const std::string& sentence : {skill_sentence(s), tail_sentence(s)})
     if (!sentence.empty()) text += sentence + "\n";
   for (const std::string& sentence : deposit_sentences(s)) text += sentence + "\n";

@@ -272,12 +272,15 @@ Markup ground_html(const SitesDiagnosis& d) {
 }  // namespace
 
 std::vector<std::string> sites_warnings(const SitesRecord& record) {
+  static constexpr const char* kAlone =
+      "see what a diagnosis of this campaign alone says from another start (--parameters)";
   const SitesDiagnosis& d = record.diagnosis;
   std::vector<std::string> warnings;
   if (!d.not_nested.empty())
     warnings.push_back("there is no error of unseen rows: " + d.not_nested + " (measure more, or hold rows out)");
   for (const SiteDiagnosis& site : d.sites)
-    if (const std::string far = far_ground_warning(site.base); !far.empty()) warnings.push_back(site.name + ": " + far);
+    if (const std::string far = far_ground_warning(site.base, kAlone); !far.empty())
+      warnings.push_back(site.name + ": " + far);
   for (std::size_t i = 0; i < d.nested.size(); ++i)
     if (d.nested[i].folds.splits_groups) warnings.push_back(d.sites[i].name + ": " + kSplitGroups);
   return warnings;

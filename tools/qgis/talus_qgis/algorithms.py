@@ -348,6 +348,9 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
     def prepareAlgorithm(self, parameters, context, feedback):
         """Takes the layers in the main thread, to which they belong."""
         self.layers, self.destinations = {}, {}
+        own = {definition.name() for definition in self.parameterDefinitions()}
+        for name in sorted(set(parameters) - own):
+            feedback.pushWarning(tr("{name}: no such parameter of {id}").format(name=name, id=self.id()) + tr("; it is not used"))
         for p in self.described():
             if p["type"] != "file" or p.get("written"):
                 continue

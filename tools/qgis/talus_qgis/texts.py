@@ -188,6 +188,7 @@ GERMAN = {
     "The events per year are those that were given; a field frequency of the sources is not read.":
         "Es gilt die angegebene Zahl der Ereignisse pro Jahr; ein Feld frequency der Ausbruchgebiete wird nicht gelesen.",
     "{name}: no such parameter of {id}": "{name}: kein Parameter von {id}",
+    "; it is not used": "; nicht verwendet",
     "; is {near} meant?": "; ist {near} gemeint?",
     "Loads the results as a group of layers.": "Lädt die Ergebnisse als Gruppe von Layern.",
     "Band of the raster that holds the heights.": "Band des Rasters mit den Höhen.",

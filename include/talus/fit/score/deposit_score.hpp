@@ -9,7 +9,7 @@ namespace talus {
 ///
 /// @param runs  empty: blocks that lie anywhere in the region stand in for simulated ones, which is what scores without
 ///              any knowledge. They stand in for too few simulated stops, too, so that no model gains by leaving the
-///              mapped region. A model that sends most blocks off the map could gain all the same, by those that stay:
+///              mapped region. A model that sends most blocks off the DEM could gain all the same, by those that stay:
 ///              see ScoreOptions::leaving_costs
 /// @param options  the rule and the folds are not used
 ///

@@ -15,6 +15,9 @@ namespace talus::io {
 ///                  that it leaves to the default ground although it describes others
 Model read_model(const std::string& path, const Campaign& campaign, std::vector<std::string>* warnings = nullptr);
 
+/// The record of such a file, with its checksum, as an input of a fit that starts from it.
+InputFile model_input(const std::string& path);
+
 /// The text of such a file. It reads back as exactly this model, except that the places of barriers are rounded. A
 /// scenario can `include` it. A band of other ground is left out.
 ///
