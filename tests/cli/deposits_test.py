@@ -229,7 +229,7 @@ class Calibrate(Deposits):
                              self.write("s.toml", '[ground.zones.default]\npreset = "forest-road-3d"\ntheta_scale = 1.0\n'), timeout=600)
         self.assertIn("energy distance of the patterns", done.stdout)
         result = self.read_json("fit/calibration.json")
-        self.assertEqual([i["role"] for i in result["inputs"]], ["campaign", "dem", "deposits", "sources", "mapped"])
+        self.assertEqual([i["role"] for i in result["inputs"]], ["campaign", "dem", "deposits", "sources", "mapped", "model"])
         low, high = result["parameters"][0]["ci95"]
         self.assertTrue(low <= 0.4 <= high, (low, high))  # of forest-road-3d
         self.assertIn("deposits", result["error"]["holdout"])
