@@ -16,6 +16,13 @@ std::vector<bool> holdout_rows(const Campaign& campaign) {
   return rows;
 }
 
+bool all_at_rest(const Campaign& campaign, const std::vector<bool>& rows) {
+  if (campaign.deposits != nullptr) return false;
+  for (std::size_t b = 0; b < campaign.blocks.size(); ++b)
+    if (rows[b] && !campaign.blocks[b].stop) return false;
+  return true;
+}
+
 std::vector<std::uint32_t> streams_of(const Campaign& campaign) {
   std::vector<std::uint32_t> streams;
   for (const MeasuredBlock& block : campaign.blocks) streams.push_back(block.stream);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
+#include <limits>
 
 #include "talus/fit/campaign/block_draws.hpp"
 #include "talus/fit/score/coverage.hpp"
@@ -95,7 +96,10 @@ double normal_quantile(double share) {
 }
 
 ResidualSpace::ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs, const DiagnosisRules& rules)
-    : campaign_(campaign), rules_(rules), observables_(observables_of(campaign)) {
+    : campaign_(campaign),
+      rules_(rules),
+      left_are_farther_(all_at_rest(campaign, fitting_rows(campaign))),
+      observables_(observables_of(campaign)) {
   const std::size_t blocks = campaign.blocks.size(), n = observables_.size();
   distributions_.assign(blocks, std::vector<Sorted>(n));
   samples_.resize(blocks);
@@ -155,6 +159,7 @@ ResidualSpace::Seen ResidualSpace::seen_of_trial(std::size_t b, const BlockRuns&
   };
   Seen seen;
   if (block.stop && !std::isnan(runs.x[t])) seen.way = {runs.x[t] - block.x, runs.y[t] - block.y};
+  seen.gone = block.stop && left_are_farther_ && t < runs.end.size() && runs.end[t] == End::Left;
   if (block.stop_mass && !std::isnan(runs.x[t])) seen.mass_share = runs.mass_share[t];
   for (std::size_t s = 0; s < runs.screens.size(); ++s) {
     const BlockRuns::AtScreen& screen = runs.screens[s];
@@ -180,7 +185,7 @@ std::vector<double> ResidualSpace::values_of(std::size_t b, const Seen& seen, bo
     const Passage passage = at_screen ? seen.passages[o.screen].value_or(Passage{}) : Passage{};
     switch (o.kind) {
       case Kind::Runout:
-        values.push_back(seen.way.norm());
+        values.push_back(seen.gone ? std::numeric_limits<double>::infinity() : seen.way.norm());
         break;
       case Kind::Lateral:
         values.push_back(forward_[b].x() * seen.way.y() - forward_[b].y() * seen.way.x());

@@ -81,14 +81,6 @@ void add_screen(std::vector<Coverage>& list, const Campaign& campaign, std::span
   add("spin ", &Passage::spin, &BlockRuns::AtScreen::spin);
 }
 
-/// Whether all released blocks came to rest on the terrain, so that none of them is missing because it left. Trials
-/// that left went farther than these. Where blocks are missing, the others are those that happened to stay: they are
-/// compared with the trials that stay. So are mapped blocks, of which those that left were never seen.
-bool all_at_rest(const Campaign& campaign) {
-  return campaign.deposits == nullptr &&
-         std::ranges::all_of(campaign.blocks, [](const MeasuredBlock& b) { return b.stop.has_value(); });
-}
-
 void correct(std::vector<Coverage>& list) {
   std::vector<double> p;
   for (const Coverage& c : list)
@@ -114,7 +106,7 @@ std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRu
                                std::uint64_t seed) {
   std::vector<Coverage> list;
   Ranks runout("runout", seed);
-  const bool left_are_farther = all_at_rest(campaign);
+  const bool left_are_farther = all_at_rest(campaign, std::vector<bool>(campaign.blocks.size(), true));
   for (std::size_t b = 0; b < campaign.blocks.size(); ++b)
     if (ask[b])
       runout.add(campaign.blocks[b], runout_of(campaign, campaign.blocks[b]),

@@ -11,6 +11,7 @@
 #include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/residual_table.hpp"
 #include "talus/fit/diagnose/score_test.hpp"
+#include "talus/fit/score/tail.hpp"
 
 namespace talus {
 namespace {
@@ -90,6 +91,41 @@ TEST(Residual, ABlockOfWhichNothingWasSeenSaysNothing) {
   measure(c, model, 3);
   const ResidualSpace space(c, observe(c, model, {40, 1, 0, 0, {}, {}}));
   EXPECT_EQ(space.whitened(Residual::Constant(space.size(), kNotGiven)).norm(), 0.0);
+}
+
+/// The DEM ends where 80 % of the trials of a block have stopped; all measured blocks came to rest. What left went
+/// farther: the place of a measured run-out among all trials is as before. Where a block may have left, too, it is that
+/// among the trials that stay, which is farther out.
+TEST(Residual, TrialsThatLeftWentFarther) {
+  constexpr std::size_t kBlocks = 30, kTrials = 60;
+  Campaign c = slope_campaign(kBlocks);
+  const Model model = model_of_preset(c, "upper-talus-3d");
+  measure(c, model, 5);
+  ASSERT_TRUE(all_at_rest(c, std::vector<bool>(kBlocks, true)));
+  auto runs = observe(c, model, {kTrials, 1, 0, 0, {}, {}});
+  const ResidualSpace whole(c, runs);
+  ASSERT_EQ(whole.observables().front().name, "runout");
+  std::vector<double> end(kBlocks);
+  for (std::size_t b = 0; b < kBlocks; ++b) {
+    std::vector<double> runouts = runouts_of(c, c.blocks[b], runs[b]);
+    std::ranges::sort(runouts);
+    end[b] = runouts[48];
+    for (std::size_t t = 0; t < kTrials; ++t)
+      if (std::hypot(runs[b].x[t] - c.blocks[b].x, runs[b].y[t] - c.blocks[b].y) > end[b])
+        runs[b].x[t] = runs[b].y[t] = kNotGiven, runs[b].end[t] = End::Left;
+  }
+  const ResidualSpace cut(c, runs);
+  Campaign with_a_gap = c;
+  with_a_gap.blocks[0].stop.reset();
+  const ResidualSpace staying(with_a_gap, runs);
+  int compared = 0;
+  for (std::size_t b = 1; b < kBlocks; ++b) {
+    if (runout_of(c, c.blocks[b]) > end[b]) continue;
+    ++compared;
+    EXPECT_DOUBLE_EQ(cut.of_measured(b)[0], whole.of_measured(b)[0]);
+    EXPECT_GT(staying.of_measured(b)[0], whole.of_measured(b)[0]);
+  }
+  EXPECT_GT(compared, 15);
 }
 
 TEST(Residual, SpearmanOfRanksByHand) {

@@ -76,6 +76,10 @@ struct Campaign {
 std::vector<bool> fitting_rows(const Campaign& campaign);
 /// The blocks that are held out.
 std::vector<bool> holdout_rows(const Campaign& campaign);
+/// Whether all blocks of some rows were released and came to rest on the terrain, so that none is missing because it
+/// left. Trials that left went farther than these. Where blocks are missing, the others are those that happened to
+/// stay, and compare with the trials that stay. So do mapped blocks, of which those that left were never seen.
+bool all_at_rest(const Campaign& campaign, const std::vector<bool>& rows);
 /// The random streams of the blocks, for draws over blocks. Size: blocks.
 std::vector<std::uint32_t> streams_of(const Campaign& campaign);
 

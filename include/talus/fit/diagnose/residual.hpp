@@ -72,6 +72,7 @@ class ResidualSpace {
   /// Measurements of one block, or of one of its trials. NaN: not seen.
   struct Seen {
     Eigen::Vector2d way{kNotGiven, kNotGiven};  // from the place of release to the stop [m]
+    bool gone = false;                          // left the terrain, which is farther than any stop
     double mass_share = kNotGiven;
     std::vector<std::optional<Passage>> passages;   // by screen; nothing: not crossed
     std::vector<double> sample_speed, sample_spin;  // by sample
@@ -87,6 +88,7 @@ class ResidualSpace {
 
   const Campaign& campaign_;
   DiagnosisRules rules_;
+  bool left_are_farther_;  // all fitting blocks came to rest: a trial that left went farther (`all_at_rest`)
   std::vector<Observable> observables_;
   std::vector<Eigen::Vector2d> forward_;                     // by block: towards its mean simulated stop, unit
   std::vector<std::vector<Sorted>> distributions_;           // by block and observable

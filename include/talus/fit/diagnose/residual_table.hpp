@@ -26,10 +26,10 @@ struct Property {
 };
 const std::vector<Property>& properties();
 
-/// Every observable against every property, most significant first. Rows with fewer than ten blocks are left out. A rock
-/// that was released more than once (docs/diagnosis-method.md, "Rocks") counts once against its mass and shape, with the
-/// means of its releases, and there must be six rocks. Crossings are tested against these only where most blocks are the
-/// only release of their rock.
+/// Every observable against every property, most significant first. Rows with fewer than ten blocks are left out. A
+/// rock that was released more than once (docs/diagnosis-method.md, "Rocks") counts once against its mass and shape,
+/// with the means of its releases, and there must be six rocks. Crossings are tested against these only where most
+/// blocks are the only release of their rock.
 std::vector<ResidualRow> residual_table(const Campaign& campaign, const ResidualSpace& space,
                                         const std::vector<bool>& rows, const DiagnosisRules& rules = {});
 
