@@ -33,7 +33,7 @@ class Diagnose(Case):
 
     def test_a_start_at_zero_is_refused(self):  # it was fitted from 0.01
         self.write("start.toml", '[ground.zones.default]\npreset = "upper-talus-3d"\npsi_scale = 0\n')
-        self.fails(2, "psi_scale", arguments=("diagnose", f"{CAMPAIGNS}/authume/campaign.toml", "--parameters",
+        self.fails(2, "psi_scale", arguments=("diagnose", f"{ELM}/campaign.toml", "--parameters",
                                               self.path("start.toml"), "-o", self.path("out")))
 
     def test_a_start_with_effects_is_refused(self):

@@ -371,8 +371,8 @@ class Archives(InputCase):
 
     def test_an_archive_by_itself_says_how_its_files_are_named(self):
         self.zipped("one", WEST)
-        self.fails(2, f"a file in an archive is named /vsizip/{self.path('one/d.zip')}/FILE", arguments=("check", "--dem", "d.zip", "--sources", "/vsizip/d.zip/s.csv"),
-                   cwd=self.path("one"))
+        self.fails(2, f"a file in an archive is named /vsizip/{self.path('one/d.zip')}/FILE", cwd=self.path("one"),
+                   arguments=("check", "--dem", "d.zip", "--sources", "/vsizip/d.zip/s.csv"))
 
     def test_flags_are_relative_to_the_current_folder(self):
         self.zipped("one", WEST)

@@ -76,8 +76,8 @@ ALGORITHMS = [
      "files": {"fitted": "fitted.toml", "report": "report.md", "record": "calibration.json"}},
     {"id": "diagnose", "command": "diagnose", "help": "closing-the-loop", "phases": ["diagnose"], "folder": "out",
      "nothing to load": True,
-     "advanced": {"fit", "trials", "parameters", "test-trials", "most-effects", "level", "base-fits", "all-rows", "nested", "no-nested",
-                  "folds", "quick-folds", "no-quick-folds"},
+     "advanced": {"fit", "trials", "parameters", "test-trials", "most-effects", "level", "base-fits", "all-rows", "nested",
+                  "no-nested", "folds", "quick-folds", "no-quick-folds"},
      "files": {"fitted": "fitted.toml", "report": "report.html", "record": "diagnosis.json"}},
     {"id": "report", "command": "report", "help": "report", "phases": []},
 ]
