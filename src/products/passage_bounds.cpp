@@ -10,14 +10,15 @@
 namespace talus {
 namespace {
 
-constexpr double kStep = 0.01;     // of the logarithm of the shape
-constexpr double kLargest = 25.0;  // logarithm of the largest shape of the table: above it the quantile is the mean
+constexpr double kStep = 0.01;               // of the logarithm of the shape
+constexpr int kSteps = 2500;                 // of the table
+constexpr double kLargest = kStep * kSteps;  // logarithm of its largest shape: above it the quantile is the mean
 
 /// Quantiles over shape, by the logarithm of the shape.
 struct Table {
   std::vector<double> low, high;
   Table() {
-    for (int i = 0; kStep * i <= kLargest + kStep; ++i) {
+    for (int i = 0; i <= kSteps + 1; ++i) {  // the value at the end has a next one, too
       const double shape = std::exp(kStep * i), width = kTwoSided / std::sqrt(shape);
       const bool wide = shape < 1e6;  // above it the distribution is normal to 1e-6
       low.push_back(wide ? boost::math::gamma_p_inv(shape, kTail) / shape : 1.0 - width);

@@ -1,6 +1,9 @@
 #include "talus/io/campaign/campaign_file.hpp"
 
+#include <cmath>
+
 #include "files.hpp"
+#include "talus/fit/campaign/deposits.hpp"
 #include "talus/io/campaign/model_file.hpp"
 
 namespace talus::io::test {
@@ -127,6 +130,36 @@ TEST_F(Campaigns, TablesOfOtherSeparatorsAreToldSo) {
   refused("", {"blocks.csv:1: has one column, 'id;x;y;", "separated by commas"});
   write_text("blocks.csv", "id,x,y,release_height_m,mass_kg\ra,600050,5200040,1,500\r");
   refused("", {"blocks.csv:1: lines must end with a line feed", "not with CR alone"});
+}
+
+TEST_F(Campaigns, TextAfterAQuotedCellIsRefused) {
+  const std::string head = "id,x,y,release_height_m,mass_kg\n";
+  for (const std::string mass : {"\"50\"0", "\"\" \"500\"", "\"500\"kg"}) {  // "50"0 was read as 500
+    write_text("blocks.csv", head + "a,600050,5200040,1," + mass + "\n");
+    refused("", {"blocks.csv:2: text stands after a quotation mark"});
+  }
+  write_text("blocks.csv", head + "\"a\"\t,600050,5200040,1,\"500\" \r\n");
+  const Campaign c = read().campaign;
+  EXPECT_EQ(c.blocks[0].id, "a");
+  EXPECT_EQ(c.blocks[0].mass, 500.0);
+}
+
+/// The DEM is a plane: the ground of a cell has the same area at its edge. A point in a cell of a polygon is a source
+/// of its own, and takes nothing from the polygon, in whatever order they stand.
+TEST_F(Campaigns, SourcesOfMappedBlocksCountByTheAreaOfTheirGround) {
+  const Row area{"POLYGON((0 0,30 0,30 20,0 20,0 0))"}, point{"POINT(15 15)"};
+  write_text("deposits.csv", "id,x,y,diameter_m\nd,600050,5200040,1\n");
+  for (const std::vector<Row>& rows : {std::vector<Row>{area, point}, std::vector<Row>{point, area}}) {
+    std::filesystem::remove(path("s.gpkg"));
+    write_vector(path("s.gpkg"), "EPSG:32632", {}, rows);
+    const Campaign c = read_campaign(write_text("c.toml",
+                                                "dem = \"dem.tif\"\n[deposits]\nfile = \"deposits.csv\"\nsources = "
+                                                "\"s.gpkg\"\n"))
+                           .campaign;
+    ASSERT_EQ(c.deposits->sources.size(), 7U);
+    for (const DepositSource& source : c.deposits->sources)
+      EXPECT_NEAR(source.area, source.point ? 100.0 : 100.0 * std::sqrt(1.0 + 0.1 * 0.1 + 1.0), 1e-9);
+  }
 }
 
 TEST_F(Campaigns, PercentIsNoFraction) {

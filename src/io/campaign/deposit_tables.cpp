@@ -111,16 +111,16 @@ std::vector<DepositSource> sources_of(const DepositSpec& spec, const Terrain& te
                          " counts nothing here: a source is as likely as its area, a block as large as it was mapped");
   const Grid& grid = terrain.heights.grid;
   const double plan = grid.cell_x * grid.cell_y;
-  std::vector<bool> taken(grid.cells(), false);
+  std::vector<bool> taken(grid.cells(), false);  // by a polygon: a point in the cell is a source of its own
   std::vector<DepositSource> sources;
   for (const SourceCell& cell : layer.cells) {
     const int column = grid.column_of(cell.x), row = grid.row_of(cell.y);
-    if (!cell.point && taken[grid.index(column, row)]) continue;
-    taken[grid.index(column, row)] = true;
-    const double slope = horn_slope(terrain.heights, column, row);
+    const std::size_t at = grid.index(column, row);
+    if (!cell.point && taken[at]) continue;
+    if (!cell.point) taken[at] = true;
     const SourceFeature& feature = layer.features[cell.feature];
     sources.push_back({{cell.x, cell.y, terrain.heights.at(column, row)},
-                       cell.point || std::isnan(slope) ? plan : plan * std::hypot(1.0, slope),
+                       cell.point ? plan : true_area(terrain.heights, column, row),
                        cell.point,
                        feature.release_height,
                        feature.velocity});

@@ -47,7 +47,7 @@ void split(const std::string& text, const std::string& path, const std::function
         cell += text[++i];
       else
         quoted = false;
-    } else if (c == '"' && trimmed(cell).empty()) {
+    } else if (c == '"' && !was_quoted && trimmed(cell).empty()) {
       cell.clear();
       quoted = was_quoted = true;
     } else if (c == ',') {
@@ -55,8 +55,12 @@ void split(const std::string& text, const std::string& path, const std::function
     } else if (c == '\n') {
       end_row();
       start = line;
-    } else if (!was_quoted || (c != '\r' && c != ' ')) {
+    } else if (!was_quoted) {
       cell += c;
+    } else if (c != ' ' && c != '\t' && c != '\r') {
+      throw InputError(path + ":" + std::to_string(line) +
+                       ": text stands after a quotation mark that closes a cell, must be a comma or the end of the "
+                       "line: is a quotation mark missing?");
     }
   }
   if (quoted)
