@@ -2,9 +2,9 @@
 All campaigns with the default numbers of trials: docs/diagnosis-results.md."""
 import os
 import re
-import shutil
 import unittest
 
+import luck_test
 from support import Case
 
 ELM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../data/elm")
@@ -88,19 +88,16 @@ class Loop(Case):
         return found
 
 
-class Diagnosis(Loop):
-    def half_of_elm(self):
-        """The campaign with every second of its fitting rows held out, too: 37 are fitted."""
-        shutil.copytree(ELM, self.path("elm"))
-        rows = self.read_table("elm/blocks.csv")
-        for row in [row for row in rows if row["holdout"] == "0"][1::2]:
-            row["holdout"] = "1"
-        self.write_table(self.path("elm/blocks.csv"), ",".join(rows[0]), [row.values() for row in rows])
-        return self.path("elm/campaign.toml")
+class Diagnosis(Loop, luck_test.Luck):
+    """The campaign of luck_test.py, on the second of whose days the ground was wet."""
+    truth = luck_test.Luck.truth + "[effects.wet-ground]\nsoftening = 1\ndrag = 1\ndays = [2]\n"
+    test_score = test_calibrate = test_diagnose = None
 
     def test_days_that_differ(self):
-        found = self.diagnose(self.half_of_elm(), *FEW, "--fit", "En50", "--most-effects", "1", rounds=1)
-        self.assertEqual(found["effect"], "wet-ground")
+        self.tables(self.path("."), self.blocks, self.stops, self.passages, [])
+        found = self.diagnose(self.path("campaign.toml"), *FEW, "--surface", "bilinear", "--fit", "theta_scale,En50", "--most-effects", "1",
+                              untested={"block-shape"}, rounds=1)  # spheres
+        self.assertEqual((found["effect"], found["where"]), ("wet-ground", "day 2"))
         self.assertLess(found["error"]["holdout"]["after"], found["error"]["holdout"]["before"])
 
 
@@ -109,8 +106,9 @@ class OfOthers(Loop):
     def test_measured_blocks_of_a_quarry(self):
         """Releases of one day, and only end points measured: neither days nor instruments can be tested."""
         start = self.write("start.toml", '[ground.zones.default]\npreset = "upper-talus-3d"\npsi_scale = 0.85\n')
-        found = self.diagnose(f"{CAMPAIGNS}/authume/campaign.toml", *FEW, "--fit", "theta_scale,En50", "--parameters", start, untested={"wet-ground", "instrument-bias"})  # 24 of its 48 blocks are fitted: a third of 72
-        self.assertEqual(found["trials_per_block"], {"search": 30, "test": 90, "compare": 600})
+        found = self.diagnose(f"{CAMPAIGNS}/authume/campaign.toml", "--trials", "10", "--test-trials", "10", *ONCE, "--fit", "En50",
+                              "--parameters", start, untested={"wet-ground", "instrument-bias"})
+        self.assertEqual(found["trials_per_block"], {"search": 30, "test": 30, "compare": 600})  # 24 fitting blocks: a third of 72
         self.assertGreater(len(found["residual"]), 3)
         self.assertEqual([i["path"] for i in found["inputs"] if i["role"] == "model"], [start])
         self.assertEqual(found["start_model"], start)  # what is not fitted stays as the start has it
