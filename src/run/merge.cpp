@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <span>
 
 #include "results.hpp"
 #include "talus/base/error.hpp"
@@ -19,15 +20,24 @@ namespace {
 
 using io::LoadedScenario;
 
-LoadedScenario scenario_of(const std::string& part, MemoryPolicy memory, int threads) {
-  const fs::path file = fs::path(part) / "scenario.toml";
-  for (const fs::path& needed : {fs::path(part) / kCheckpointManifest, file})
-    if (!fs::exists(needed))
-      throw InputError(part + ": is no part of a run (it has no " + needed.filename().string() +
-                       "); give the folders that talus run --part I/N has written");
+void require_parts(const std::vector<std::string>& folders) {
+  for (const std::string& part : folders)
+    for (const char* needed : {kCheckpointManifest, "scenario.toml"})
+      if (!fs::exists(fs::path(part) / needed))
+        throw InputError(part + ": is no part of a run (it has no " + needed +
+                         "); give the folders that talus run --part I/N has written");
+}
+
+/// The plan of the parts, by the first of them whose inputs can be read here: those of others may be on other machines.
+LoadedScenario scenario_of(std::span<const std::string> parts, MemoryPolicy memory, int threads) {
   io::RunFlags flags;
-  flags.scenario = file.string();
-  return io::load_scenario(flags, nullptr, {memory}, threads);
+  flags.scenario = (fs::path(parts.front()) / "scenario.toml").string();
+  try {
+    return io::load_scenario(flags, nullptr, {memory}, threads);
+  } catch (const InputError&) {
+    if (parts.size() == 1) throw;
+  }
+  return scenario_of(parts.subspan(1), memory, threads);
 }
 
 std::string name_of(const Part& part) {
@@ -94,7 +104,8 @@ Outcome merge(const MergeRequest& request, Observer& observer) {
   const std::unique_ptr<ScratchFile> scratch =
       scratch_file_beside(request.out, memory_limit_of(request.memory, threads));
   const MemoryPolicy memory(scratch.get());
-  LoadedScenario loaded = scenario_of(request.parts.front(), memory, threads);
+  require_parts(request.parts);
+  LoadedScenario loaded = scenario_of(request.parts, memory, threads);
   const std::vector<Checkpoint> checkpoints = opened(request.parts, loaded);
   observer.inputs_read();
   io::OutputFolder folder(request.out, request.overwrite);

@@ -640,6 +640,12 @@ class Walk(Case):
         self.nets(*nets[2:])
         self.assertNotIn(words, self.run_well("check", self.scenario()).stdout)
 
+    def test_one_that_holds_nothing_is_said(self):
+        """A number that was not filled in is 0 in many a layer."""
+        self.nets((125.0, "good", 4.0, 1000.0), (120.0, "low", 0.0, 1000.0), (115.0, "weak", 4.0, 0.0))
+        self.assertIn("barriers: low, weak: of height or capacity 0, which hold no block",
+                      self.run_well("check", self.scenario()).stdout)
+
     def test_one_that_holds_all(self):
         self.nets((125.0, "wall", 100.0, math.inf))
         done = self.run_well("run", self.scenario(), "-o", self.path("out"))

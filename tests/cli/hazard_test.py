@@ -483,6 +483,15 @@ class Hazard(Case):
         done = self.run_well("check", self.path("s.toml"))
         self.assertIn("0.52 events per year", done.stdout)
 
+    def test_faults_of_objects_are_found_before_the_maps(self):
+        write_features(self.path("doors.gpkg"), "doors", [("POINT (2600110 1200155)", ["A"])], [("name", ogr.OFTString)])
+        self.simulate()
+        done = self.call("hazard", self.path("out"), "--objects", self.path("doors.gpkg"), "--progress=json")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("feature 1: is a point, must be a polygon or a line that blocks may hit; make areas of points first, as wide "
+                      "as the houses (Buffer, in QGIS)", done.stderr)
+        self.assertNotIn("evaluate", done.stdout + done.stderr)
+
     def test_objects(self):
         """A house below each cliff, one out of reach; a road in another system that all blocks must cross."""
         write_features(self.path("houses.gpkg"), "houses",

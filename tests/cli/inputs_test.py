@@ -49,6 +49,33 @@ class InputCase(Case):
         return found
 
 
+class Rasters(InputCase):
+    def test_a_raster_of_sources_is_told_its_way_out(self):
+        """As other programs have it."""
+        self.refused("cannot be opened as a vector layer", "it is a raster: make polygons of it with gdal_polygonize.py",
+                     sources="dem.tif")
+
+    def test_cells_of_the_ground_are_those_that_have_a_height(self):
+        """Counted alike with zones of polygons, of a raster and without: 60 x 60 cells, the northern row without a height."""
+        write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), [])])
+        write_features(self.path("zones.gpkg"), "zones", [(box(0, 200, 300, 100), ["lower-talus-3d"])], [("zone", ogr.OFTString)])
+        z = heights()
+        z[0] = -9999
+        write_dem(self.path("dem.tif"), z, nodata=-9999)
+        codes = np.zeros(z.shape)
+        codes[:20] = 1
+        write_dem(self.path("zones.tif"), codes)
+        said = self.run_well("check", *self.flags()).stdout
+        self.assertIn("default: 3 540 cells", said)
+        zones = ("--zones", self.path("zones.gpkg"), "--zone-field", "zone")
+        self.assertIn("lower-talus-3d: 1 140 cells", self.run_well("check", *self.flags(), *zones).stdout)
+        self.write("s.toml", '[ground]\nfile = "zones.tif"\n[ground.zones.0]\npreset = "upper-talus-3d"\n'
+                   '[ground.zones.1]\npreset = "lower-talus-3d"\n')
+        said = self.run_well("check", self.path("s.toml"), *self.flags()).stdout
+        self.assertIn("1: 1 140 cells", said)
+        self.assertIn("0: 2 400 cells", said)
+
+
 class Fields(InputCase):
     def setUp(self):
         super().setUp()

@@ -111,7 +111,7 @@ class Layers(Case):
         flags = ["--dem", self.path("dem.tif"), "--trajectories", "20", "--sources", self.path("site.gpkg|layername=cliffs"),
                  "--barriers", self.path("wall.csv")]
         done = self.run_well("run", *flags, "-o", self.path("out"))
-        self.assertIn("wall.csv: no field id: the lines are called by the numbers of their features", done.stderr)
+        self.assertIn("wall.csv: no field id or name: the lines are called by the numbers of their features", done.stderr)
         below = gdal.Open(self.path("out/impact_probability.tif")).ReadAsArray()
         row = int(150 / gdal.Open(self.path("out/impact_probability.tif")).GetGeoTransform()[1])
         self.assertGreater((below[:row] > 0).sum(), 0)

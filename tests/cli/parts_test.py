@@ -114,6 +114,26 @@ class Parts(RunCase):
         with open(f"{folder}/part.json", "w", encoding="utf-8") as file:
             file.write(json.dumps(content, indent=2, ensure_ascii=False) + "\n")
 
+    def test_inputs_that_are_on_other_machines(self):
+        """The parts have inputs of their own: those of one must be here, in any order; then none, and their new place is told."""
+        for i in "12":
+            os.makedirs(self.path(f"m{i}"))
+            for name in ("dem.tif", "sources.gpkg", "screens.gpkg", "nets.gpkg", "s.toml"):
+                shutil.copy(self.path(name), self.path(f"m{i}/{name}"))
+            self.run_well("run", self.path(f"m{i}/s.toml"), "-o", self.path(f"p{i}"), "--part", f"{i}/2", "-q")
+        self.run_well("merge", self.path("both"), self.path("p1"), self.path("p2"), "-q")
+        os.rename(self.path("m2"), self.path("elsewhere"))
+        self.run_well("merge", self.path("one"), self.path("p2"), self.path("p1"), "-q")
+        self.assert_same("both", "one", without=("talus.qgs",))
+        os.rename(self.path("m1"), self.path("moved"))
+        self.fails(2, "p2/scenario.toml", "if the inputs have moved, correct their paths in this file",
+                   arguments=("merge", self.path("none"), self.path("p1"), self.path("p2")))
+        trace = ("trace", self.path("one/scenario.toml"), "--source", "1", "--block", "1")
+        self.fails(2, "correct their paths", arguments=trace)
+        text = self.read_text("one/scenario.toml")
+        self.write("one/scenario.toml", text.replace(self.path("m1"), self.path("moved")))
+        self.run_well(*trace)
+
     def test_what_cannot_be_merged(self):
         for i in (1, 2):
             self.run_scenario(f"part{i}", "--part", f"{i}/2")

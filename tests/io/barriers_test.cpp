@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "files.hpp"
@@ -29,6 +30,14 @@ TEST_F(BarrierFile, EachFeatureWithItsNumbers) {
   EXPECT_TRUE(layer.warnings.empty());
 }
 
+TEST_F(BarrierFile, WithoutIdsTheyHaveTheirNames) {
+  const BarrierLayer layer = read({{"name", OFTString}, {"height", OFTReal}, {"capacity", OFTReal}},
+                                  {{"LINESTRING(10 20,30 40)", {"road A", "4.5", "1000"}}});
+  EXPECT_EQ(layer.barriers[0].id, "road A");
+  EXPECT_EQ(std::ranges::count_if(layer.notes, [](const std::string& n) { return n.find("no field id") != n.npos; }),
+            0);
+}
+
 TEST_F(BarrierFile, WrongOnesAreRefused) {
   const auto refused = [&](const Row& row, const std::vector<std::string>& words) {
     expect_input_error([&] { read(fields_, {row}); }, words);
@@ -37,7 +46,7 @@ TEST_F(BarrierFile, WrongOnesAreRefused) {
   refused({"LINESTRING(1 1,2 2)", {"a", "4", "-1"}}, {"n.gpkg: feature 1", "capacity = -1", "kJ"});
   refused({"LINESTRING(1 1,2 2)", {"a", "NULL", "1"}}, {"n.gpkg: feature 1", "has no height"});
   refused({"LINESTRING(1 1,2 2)", {"a", "4", "NULL"}}, {"n.gpkg: feature 1", "has no capacity"});
-  refused({"POLYGON((0 0,1 0,1 1,0 0))", {"a", "4", "1"}}, {"is no line", "height (m) and capacity (kJ)"});
+  refused({"POLYGON((0 0,1 0,1 1,0 0))", {"a", "4", "1"}}, {"is no line", "height (m) and capacity (kJ; inf"});
   expect_input_error(
       [&] {
         read(fields_, {{"LINESTRING(1 1,2 2)", {"2", "4", "1"}}, {"LINESTRING(1 1,2 2)", {"NULL", "4", "1"}}});
@@ -48,7 +57,7 @@ TEST_F(BarrierFile, WrongOnesAreRefused) {
       [&] {
         read({{"id", OFTString}}, {{"LINESTRING(1 1,2 2)", {"a"}}});
       },
-      {"has no height", "capacity (kJ)"});
+      {"has no height", "capacity (kJ; inf: any energy, as a dam)"});
 }
 
 }  // namespace talus::io::test

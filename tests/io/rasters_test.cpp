@@ -112,6 +112,20 @@ TEST_F(Terrains, MustBeInMetres) {
   expect_input_error([&] { read_terrain(heights); }, {"heights.tif", "in feet", "gdal_calc.py", "0.3048"});
 }
 
+/// Who followed "declare it as missing" took heights away, one value at a time.
+TEST_F(Terrains, HeightsInDecimetresAreToldHowToConvert) {
+  const std::string dem = RasterFile{.values = std::vector<double>(80, 22493.0)}.write(path("dm.tif"));
+  expect_input_error([&] { read_terrain(dem); },
+                     {"dm.tif", "22493", "not in metres", "gdal_calc.py", "A*0.1", "decimetres"});
+  const std::string missing = RasterFile{.values = std::vector<double>(80, 3.4e38)}.write(path("none.tif"));
+  try {
+    read_terrain(missing);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_EQ(std::string(e.what()).find("not in metres"), std::string::npos) << e.what();
+  }
+}
+
 TEST_F(Terrains, HeightsOfACompoundSystemMustBeInMetres) {
   EXPECT_NO_THROW(read_terrain(RasterFile{.system = "EPSG:32632+5773"}.write(path("metres.tif"))));  // EGM96 height
   const std::string feet = RasterFile{.system = "EPSG:32610+6360"}.write(path("feet.tif"));  // NAVD88 height (ftUS)

@@ -168,8 +168,9 @@ void print_terrain(const LoadedScenario& loaded) {
 void print_zones(const Scenario& scenario) {
   const auto& zones = scenario.cover.zones.values;
   std::vector<std::uint64_t> cells(scenario.cover.grounds.size());
-  if (zones.empty()) cells[0] = scenario.surface.grid().cells();
-  for (const std::uint8_t zone : zones) ++cells[zone];
+  const auto& heights = scenario.surface.heights().values;  // blocks meet no ground where there is none
+  for (std::size_t cell = 0; cell < heights.size(); ++cell)
+    if (!std::isnan(heights[cell])) ++cells[zones.empty() ? 0 : zones[cell]];
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::string name =
         i < scenario.zone_names.size() && !scenario.zone_names[i].empty() ? scenario.zone_names[i] : "default";
@@ -191,13 +192,16 @@ void print_blocks(const Scenario& scenario) {
   if (blocks.power_law.volume.high > 0.0)
     line("diameters", "power law of volume, " + range_text(blocks.power_law.volume, "m3") + ", exponent " +
                           talus::text_of(blocks.power_law.exponent));
-  for (const talus::BlockClass& c : blocks.classes)
-    line("diameters",
-         range_text(c.diameter, "m") + (blocks.classes.size() > 1 ? ", weight " + talus::text_of(c.weight) : ""));
   const auto own = std::ranges::count_if(scenario.features, [](const auto& f) { return !std::isnan(f.diameter.low); });
+  const bool all_own = own > 0 && own == std::ssize(scenario.features);
+  for (const talus::BlockClass& c : blocks.classes)
+    if (!all_own)
+      line("diameters",
+           range_text(c.diameter, "m") + (blocks.classes.size() > 1 ? ", weight " + talus::text_of(c.weight) : ""));
   if (own > 0)
-    line("", own == 1 ? "1 feature has a diameter of its own"
-                      : count_text(static_cast<std::uint64_t>(own)) + " features have a diameter of their own");
+    line(all_own ? "diameters" : "",
+         own == 1 ? "1 feature has a diameter of its own"
+                  : count_text(static_cast<std::uint64_t>(own)) + " features have a diameter of their own");
   line("releases", count_text(scenario.sources.size()) + " x " + count_text(scenario.trajectories) + " = " +
                        count_text(scenario.released()) + " trajectories, seed " + std::to_string(scenario.seed));
   line("thresholds", "energy " + list_text(scenario.output.energy_thresholds, "kJ") + "; height " +

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "progress.hpp"
@@ -112,12 +113,9 @@ talus::io::LoadedScenario recorded_plan(const Options& options, talus::io::Hazar
 }
 
 /// Traces the recorded plan again with other weights and evaluates every cell.
-std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, const fs::path& file, Progress& progress,
-                                                       talus::io::HazardRecord& record) {
-  record.header = talus::io::read_hazard_header(file);
+std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, const talus::Scenario& scenario,
+                                                       Progress& progress, talus::io::HazardRecord& record) {
   if (record.width > 0.0) check_width(record.header, record.matrix);
-  const talus::io::LoadedScenario loaded = recorded_plan(options, record);
-  const talus::Scenario& scenario = loaded.scenario;
   auto weights = talus::AnnualWeights::of(scenario);
   if (!weights) throw std::logic_error("a plan with frequencies has no weights");
   if (!options.quiet)
@@ -153,10 +151,9 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
 }
 
 /// Runs the recorded plan again and writes the hazard of each object. Returns how often each is hit, in words.
-std::vector<std::string> write_objects(const Options& options, const fs::path& folder,
+std::vector<std::string> write_objects(const Options& options, const talus::io::LoadedScenario& loaded,
+                                       const talus::io::ObjectLayer& layer, const fs::path& folder,
                                        talus::io::HazardRecord& record) {
-  const talus::io::LoadedScenario loaded = recorded_plan(options, record);
-  const talus::io::ObjectLayer layer(options.objects, loaded, options.width);
   for (const std::string& warning : layer.warnings()) record.warnings.push_back(warning);
   if (const std::string text = layer.not_copied_text(record.header.rules, record.matrix.years); !text.empty())
     record.warnings.push_back(text);
@@ -178,6 +175,9 @@ std::vector<std::string> write_objects(const Options& options, const fs::path& f
   record.objects_file = options.objects;
   record.replayed = true;
   std::vector<std::string> lines = layer.hits_text(rules, hits);
+  lines.emplace_back(
+      "energies of objects are the largest within the outline, those of the maps when a block passes: for a wall take "
+      "entry_<kJ> of objects.csv");
   if (const auto note = talus::io::pieces_note(options.folder)) lines.insert(lines.begin(), *note);
   return lines;
 }
@@ -191,9 +191,9 @@ std::string object_text(const talus::io::HazardRecord& record) {
          " m (larger cells are hit more often; --width 10 for an object 10 m wide, whatever the cell)";
 }
 
-int hazard(const Options& options) {
-  catch_signals();
-  const fs::path folder(options.folder), file = tally_file(folder);
+/// What is asked of the hazard file, as far as it is known before the maps. Throws InputError for files that are not
+/// there.
+talus::io::HazardRecord asked_of(const Options& options) {
   talus::io::HazardRecord record;
   record.command = command_line();
   record.matrix_file = options.matrix;
@@ -203,10 +203,22 @@ int hazard(const Options& options) {
     if (!input.empty() && !input.starts_with("/vsi") && input.find(':') == std::string::npos && !fs::exists(input))
       throw talus::InputError(input + ": there is no such file");
   if (!options.matrix.empty()) record.matrix = talus::io::read_matrix(options.matrix);
+  return record;
+}
+
+int hazard(const Options& options) {
+  catch_signals();
+  const fs::path folder(options.folder), file = tally_file(folder);
+  talus::io::HazardRecord record = asked_of(options);
+  record.header = talus::io::read_hazard_header(file);
   talus::io::StagedFiles staged(folder, "hazard.json", options.overwrite);
+  std::optional<talus::io::LoadedScenario> plan;  // where its trajectories are traced again
+  std::optional<talus::io::ObjectLayer> layer;    // its faults are found before the maps are made
+  if (!options.frequency.empty() || !options.objects.empty()) plan = recorded_plan(options, record);
+  if (!options.objects.empty()) layer.emplace(options.objects, *plan, options.width);
   Progress progress(options.mode(), 0, options.frequency.empty() ? "evaluate" : "simulate");
   const auto survey = options.frequency.empty() ? survey_of(file, options.threads, progress, record)
-                                                : reweighted_survey(options, file, progress, record);
+                                                : reweighted_survey(options, plan->scenario, progress, record);
   record.cells = survey->cells();
   if (record.width == 0.0) record.warnings = warnings_of(record.matrix, record.header.rules);
   if (record.width > talus::io::kWidestObject)
@@ -228,7 +240,7 @@ int hazard(const Options& options) {
       options.threads > 0 ? options.threads : omp_get_num_procs());
   progress.finish();
   std::vector<std::string> objects;
-  if (!options.objects.empty()) objects = write_objects(options, staged.temporary(), record);
+  if (layer) objects = write_objects(options, *plan, *layer, staged.temporary(), record);
   record.files = staged.files();
   talus::io::write_text(staged.temporary() / "hazard.json", talus::io::hazard_json(record));
   const std::vector<std::string> removed = staged.to_remove();

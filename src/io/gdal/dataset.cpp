@@ -104,6 +104,17 @@ bool GdalMessages::failed() const {
   return !errors_.empty() || !thread_errors.empty();
 }
 
+namespace {
+
+/// The way out where a raster is given for a layer; empty if it is none.
+std::string raster_hint(const std::string& file, unsigned kinds) {
+  if ((kinds & GDAL_OF_RASTER) != 0) return {};
+  if (GDALIdentifyDriverEx(name_for_gdal(file).c_str(), GDAL_OF_RASTER, nullptr, nullptr) == nullptr) return {};
+  return "; it is a raster: make polygons of it with gdal_polygonize.py " + shell_word(file) + " polygons.gpkg";
+}
+
+}  // namespace
+
 Dataset open_dataset(const std::string& path, unsigned kinds) {
   GdalMessages messages;
   const std::string file = (kinds & GDAL_OF_VECTOR) != 0 ? file_of_layer(path) : path;
@@ -123,8 +134,10 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
     const char* columns = (kinds & GDAL_OF_VECTOR) != 0 && is_text_table(file)
                               ? " (a CSV must have two columns at least: put another one beside wkt, as id)"
                               : "";
-    throw InputError(path + ": cannot be opened as a " + kind + ": " + messages.take() + columns + archive_hint(path) +
-                     "; docs/security.md has the formats that are read");
+    std::string reason = messages.take();
+    if (reason.ends_with('.')) reason.pop_back();
+    throw InputError(path + ": cannot be opened as a " + kind + ": " + reason + columns + archive_hint(path) +
+                     raster_hint(file, kinds) + "; docs/security.md has the formats that are read");
   }
   if ((kinds & GDAL_OF_RASTER) != 0) refuse_named_overviews(*dataset, path);
   return dataset;

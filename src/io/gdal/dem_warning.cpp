@@ -30,11 +30,12 @@ std::vector<std::string> dem_warnings(const std::string& path, const DemFigures&
   std::vector<std::string> warnings;
   if (f.cells < kFewestCells) return warnings;
   if (is_steep(f))
-    warnings.push_back(path + ": half of its cells are steeper than " + with_digits(degrees(f.median_slope), 2) +
-                       " deg, and " + percent(f.steep_share, 2) +
-                       " of them steeper than 80 deg (mountain sides: 20 to 40 deg, and 0 to 1.5 %): is it a picture "
-                       "(a hillshade) in the place of heights, or are they in feet? Feet: gdal_calc.py -A " +
-                       shell_word(path) + " --calc='A*0.3048' --type=Float32 --outfile=metres.tif");
+    warnings.push_back(
+        path + ": half of its cells are steeper than " + with_digits(degrees(f.median_slope), 2) + " deg, and " +
+        percent(f.steep_share, 2) +
+        " of them steeper than 80 deg (mountain sides: 20 to 40 deg, and 0 to 1.5 %): is it a picture "
+        "(a hillshade) in the place of heights, or are they in feet or decimetres? Feet: gdal_calc.py -A " +
+        shell_word(path) + " --calc='A*0.3048' --type=Float32 --outfile=metres.tif (decimetres: A*0.1)");
   if (has_steps(f, cell))
     warnings.push_back(path + ": all heights are multiples of " + text_of(f.step) + " m" +
                        (f.step == 0.3048 ? " (a foot)" : "") + ", a slope of " +

@@ -70,7 +70,11 @@ class HeightReader {
                    std::to_string(row) + " (from 0 in the north-west), must be " + text_of(kLowest) + " to " +
                    text_of(kHighest) + " m: if it stands for missing values, declare it with " +
                    edit_command(path, "-a_nodata " + stored) +
-                   (height > kHighest && height < 1e5 ? "; or are the heights in feet?" : ""));
+                   (height > kHighest && height < 1e6
+                        ? "; but if many are as large, they are not in metres: gdal_calc.py -A " + shell_word(path) +
+                              " --calc='A*0.1' --type=Float32 --outfile=metres.tif of decimetres (A*0.01 of "
+                              "centimetres, A*0.3048 of feet)"
+                        : ""));
 }
 
 /// Counts of heights: the same in any order of the pieces.

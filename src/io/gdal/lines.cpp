@@ -53,13 +53,13 @@ class LineReader {
         meant_(std::move(meant)),
         off_(terrain),
         layer_(std::move(role), path, terrain),
-        id_(layer_.field("id")) {
+        id_(layer_.field("id") >= 0 ? layer_.field("id") : layer_.field("name")) {
     if (id_ >= 0) use_of(id_, "id", "").is_text = true;
   }
 
   Layer& layer() { return layer_; }
 
-  /// The field `id`, else the number of the feature.
+  /// The field `id`, without it `name`, else the number of the feature.
   std::string id_of(const OGRFeature& feature) {
     const std::string id = id_ < 0 ? "" : layer_.code(feature, id_);
     if (id.empty()) {
@@ -114,7 +114,8 @@ class LineReader {
         throw InputError(label + ": has no id, and its number " + number +
                          " is the id of another line, must have an id of its own");
     off_.warn(path_, "features", brought_from(layer_), out.warnings);
-    if (id_ < 0) out.notes.push_back(path_ + ": no field id: the lines are called by the numbers of their features");
+    if (id_ < 0)
+      out.notes.push_back(path_ + ": no field id or name: the lines are called by the numbers of their features");
     if (!uses_.empty()) out.notes.push_back(fields_note(path_, uses_, features_));
     layer_.tell(out);
   }
@@ -242,7 +243,8 @@ ScreenLayer read_screens(const std::string& path, const Terrain& terrain) {
 }
 
 BarrierLayer read_barriers(const std::string& path, const Terrain& terrain) {
-  LineReader reader("barriers", path, terrain, "lines with the fields height (m) and capacity (kJ)");
+  LineReader reader("barriers", path, terrain,
+                    "lines with the fields height (m) and capacity (kJ; inf: any energy, as a dam)");
   BarrierLayer out;
   const int height = reader.layer().field("height"), capacity = reader.layer().field("capacity");
   for_each_feature(reader.layer(), [&](const Feature& feature) {

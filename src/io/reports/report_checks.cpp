@@ -50,12 +50,15 @@ EffectNames effects_of(const RunFacts& run) {
 }
 
 /// The presets of the ground, each once.
-std::vector<std::string> presets_of(const RunFacts& run) {
+/// @param zones  also those that zones start from
+std::vector<std::string> presets_of(const RunFacts& run, bool zones) {
   std::vector<std::string> presets;
-  for (const RecordedSetting* setting : run.settings_of("ground."))
-    if (setting->is_of_preset())
-      if (std::string name = setting->source.substr(7); std::ranges::count(presets, name) == 0)
-        presets.push_back(std::move(name));
+  for (const RecordedSetting* setting : run.settings_of("ground.")) {
+    const bool of_zone = zones && setting->key.ends_with(".preset");
+    if (!of_zone && !setting->is_of_preset()) continue;
+    std::string name = of_zone ? setting->value : setting->source.substr(7);
+    if (std::ranges::count(presets, name) == 0) presets.push_back(std::move(name));
+  }
   return presets;
 }
 
@@ -169,7 +172,7 @@ void check_numbers(const CheckedRun& checked, Checks& checks) {
 
 void check_ground(const CheckedRun& checked, Checks& checks) {
   const RunFacts& run = checked.run;
-  const std::vector<std::string> presets = presets_of(run);
+  const std::vector<std::string> presets = presets_of(run, !checked.fit);
   if (checked.fit)
     checks.push_back({checked.fit->note.empty() ? Mark::Fine : Mark::Look, "Ground", "fitted: " + checked.fit->file,
                       "A fit holds for its slope, its blocks and its kind of DEM."});

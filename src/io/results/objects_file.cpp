@@ -206,7 +206,8 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     Parts parts = layer.parts(*feature);
     if (parts.empty() || !parts.points.empty())
       throw InputError(layer.label(*feature) + ": " + (parts.empty() ? "has no geometry" : "is a point") +
-                       ", must be a polygon or a line that blocks may hit");
+                       ", must be a polygon or a line that blocks may hit" +
+                       (parts.empty() ? "" : "; make areas of points first, as wide as the houses (Buffer, in QGIS)"));
     const OGREnvelope box = parts.envelope();
     state_->names.push_back(
         object_name(layer, *feature, {layer.field("name"), layer.field("id"), layer.field("object")}));

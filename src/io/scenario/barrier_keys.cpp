@@ -91,7 +91,12 @@ void read_instrument_bias(ScenarioSpec& spec, TableReader& top) {
 }
 
 void warn_of_unlikely_barriers(std::span<const Barrier> barriers, std::vector<std::string>& warnings) {
-  std::vector<std::string> names;
+  std::vector<std::string> names, idle;
+  for (const Barrier& b : barriers)
+    if (b.height == 0.0 || b.capacity == 0.0) idle.push_back(b.id);
+  if (!idle.empty())
+    warnings.push_back("barriers: " + listed(idle) +
+                       ": of height or capacity 0, which hold no block: was the number not filled in?");
   for (const Barrier& b : barriers)
     if (b.height > 0.0 && std::isfinite(b.capacity) && (b.capacity > kMostCapacity || b.height > kMostHeight))
       names.push_back(b.id + " (" + text_of(1e-3 * b.capacity) + " kJ, " + text_of(b.height) + " m)");

@@ -127,7 +127,7 @@ void warn_unused_diameter(const ScenarioSpec& spec, const SourceLayer& layer, st
   }
   warnings.push_back("blocks.diameter (" + origin + ") is not used: all " + std::to_string(layer.features.size()) +
                      " features of " + spec.sources.path + " have diameters of their own, " + text_of(all.low) +
-                     " to " + text_of(all.high) + " m");
+                     " to " + text_of(all.high) + " m (--field diameter= to leave the field out)");
 }
 
 /// A preset of the command line under numbers of the scenario that hide it: easily overlooked.

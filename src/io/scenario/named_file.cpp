@@ -43,6 +43,19 @@ void check_encoding(const std::vector<const NamedFile*>& files, std::vector<std:
       faults.push_back(file->where + ": " + fault);
 }
 
+namespace {
+
+/// Where the scenario is that of results or of a part: the way out if its inputs are elsewhere by now.
+std::string moved_hint(const std::string& where) {
+  const std::size_t name = where.find("scenario.toml:");
+  if (name == std::string::npos) return {};
+  const std::filesystem::path folder = where.substr(0, name);
+  const bool recorded = std::filesystem::exists(folder / "run.json") || std::filesystem::exists(folder / "part.json");
+  return recorded ? "; if the inputs have moved, correct their paths in this file: what they hold is compared" : "";
+}
+
+}  // namespace
+
 void check_files(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults) {
   start_gdal();
   for (const NamedFile* file : files) {
@@ -53,7 +66,7 @@ void check_files(const std::vector<const NamedFile*>& files, std::vector<std::st
     if (!name.fault.empty())
       faults.push_back(file->where + ": " + name.fault);
     else if (name.network ? VSIStatL(name_for_gdal(path).c_str(), &status) != 0 : name.file.empty())
-      faults.push_back(file->where + ": no such file (" + path + ")");
+      faults.push_back(file->where + ": no such file (" + path + ")" + moved_hint(file->where));
   }
 }
 
