@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "in_double.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/products/interval.hpp"
 
@@ -16,15 +17,15 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Upper Poisson bound of a count k, less k: 3.69 at 0. For any k >= 0, not only whole numbers.
 double poisson_margin(double k) {
-  return boost::math::gamma_p_inv(k + 1.0, 1.0 - kTail) - k;
+  return boost::math::gamma_p_inv(k + 1.0, 1.0 - kTail, InDouble()) - k;
 }
 
 }  // namespace
 
 Bounded gamma_interval(double sum, double squares, double largest) {
   const double above = sum + largest, spread = squares + largest * largest;
-  return {sum, sum > 0.0 ? boost::math::gamma_p_inv(sum * sum / squares, kTail) * squares / sum : 0.0,
-          boost::math::gamma_p_inv(above * above / spread, 1.0 - kTail) * spread / above};
+  return {sum, sum > 0.0 ? boost::math::gamma_p_inv(sum * sum / squares, kTail, InDouble()) * squares / sum : 0.0,
+          boost::math::gamma_p_inv(above * above / spread, 1.0 - kTail, InDouble()) * spread / above};
 }
 
 Bounded annual_frequency(const WeightSums& counted, const WeightScale& scale) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "in_double.hpp"
 #include "talus/base/sample.hpp"
 
 namespace talus {
@@ -21,8 +22,8 @@ struct Table {
     for (int i = 0; i <= kSteps + 1; ++i) {  // the value at the end has a next one, too
       const double shape = std::exp(kStep * i), width = kTwoSided / std::sqrt(shape);
       const bool wide = shape < 1e6;  // above it the distribution is normal to 1e-6
-      low.push_back(wide ? boost::math::gamma_p_inv(shape, kTail) / shape : 1.0 - width);
-      high.push_back(wide ? boost::math::gamma_p_inv(shape, 1.0 - kTail) / shape : 1.0 + width);
+      low.push_back(wide ? boost::math::gamma_p_inv(shape, kTail, InDouble()) / shape : 1.0 - width);
+      high.push_back(wide ? boost::math::gamma_p_inv(shape, 1.0 - kTail, InDouble()) / shape : 1.0 + width);
     }
   }
 };
