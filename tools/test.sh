@@ -26,7 +26,7 @@ cmake --preset release ${TALUS_DATA:+-DTALUS_DATA="$TALUS_DATA"}
 cmake --build --preset release
 wait "$qgis_packages" || { cat "$qgis_log"; exit 1; }
 stage "release: tests"
-ctest --preset release -j 2
+ctest --preset release -j 3  # three on two processors: tests wait for the disk, too
 package_log="$(mktemp)"  # a bare Debian is installed, mostly by one processor, beside the next build
 packages=""
 if [ "$(id -u)" = 0 ]; then

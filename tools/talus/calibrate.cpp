@@ -27,7 +27,11 @@ struct Options : CampaignCommand {
 
 std::vector<talus::BlockRuns> runs_of(const talus::Campaign& campaign, const talus::Model& model,
                                       const talus::io::Calibration& c, const std::vector<bool>& blocks) {
-  talus::ObserveOptions how{c.score_trials, c.options.seed, talus::kUnseen, c.options.threads, blocks, {}};
+  talus::ObserveOptions how{.trials = c.score_trials,
+                            .seed = c.options.seed,
+                            .first_trial = talus::kUnseen,
+                            .threads = c.options.threads,
+                            .blocks = blocks};
   how.proceed = [] { return !interrupted(); };
   std::vector<talus::BlockRuns> runs = talus::observe(campaign, model, how);
   if (interrupted()) stop_interrupted();

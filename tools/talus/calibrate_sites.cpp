@@ -100,7 +100,10 @@ int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how
   take_start(start, opened.folder, c);
   const std::size_t together = share.empty() ? 1 : opened.sites.size();
   for (std::size_t i = 0; i < opened.sites.size(); i += together) work.fit(i, together);
-  talus::ObserveOptions unseen{kScoreTrials, how.seed, talus::kUnseen, how.threads, {}, [] { return !interrupted(); }};
+  talus::ObserveOptions unseen{
+      .trials = kScoreTrials, .seed = how.seed, .first_trial = talus::kUnseen, .threads = how.threads, .proceed = [] {
+        return !interrupted();
+      }};
   c.evidence = talus::io::evidence_of_sites(opened.sites, work.start(), work.models(), unseen);
   if (interrupted()) stop_interrupted();
   warn_of_sites(command, c, c.evidence);

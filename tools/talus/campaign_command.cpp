@@ -10,8 +10,8 @@
 void require_measurements(const std::string& path, const talus::Campaign& campaign) {
   const std::vector<bool> rows = talus::fitting_rows(campaign);
   const talus::Model model = talus::model_of_preset(campaign, talus::kDefaultPreset);
-  const auto runs =
-      talus::observe(campaign, model, {1, 1, 0, 1, rows, {}});  // which rows exist depends on no parameter
+  const auto runs = talus::observe(
+      campaign, model, {.trials = 1, .threads = 1, .blocks = rows});  // which rows exist depends on no parameter
   if (!talus::score(campaign, runs, rows).groups.empty()) return;
   throw talus::InputError(path + ": nothing to fit to: " + std::to_string(std::count(rows.begin(), rows.end(), true)) +
                           " of " + std::to_string(rows.size()) +

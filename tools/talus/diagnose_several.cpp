@@ -56,7 +56,8 @@ int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOption
   } catch (const talus::FitInterrupted&) {
     stop_interrupted();
   }
-  talus::ObserveOptions unseen{kScoreTrials, how.seed + 1, 0, how.threads, {}, [] { return !interrupted(); }};
+  talus::ObserveOptions unseen{
+      .trials = kScoreTrials, .seed = how.seed + 1, .threads = how.threads, .proceed = [] { return !interrupted(); }};
   talus::io::open_holdout(opened.sites, record, unseen);
   if (interrupted()) stop_interrupted();
   warn_of_sites(command, record, record.evidence);

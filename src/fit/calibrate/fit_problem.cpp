@@ -65,9 +65,13 @@ Score score_at(const FitProblem& problem, const FitOptions& options, const Eigen
   std::vector<SiteScore> scores;
   scores.reserve(problem.sites.size());
   for (const FitSite& site : problem.sites) {
-    ObserveOptions how{
-        trials.count, options.seed, trials.first, options.threads, site.rows, {}, effort_of(options.rules)};
-    how.traced = options.traced;
+    const ObserveOptions how{.trials = trials.count,
+                             .seed = options.seed,
+                             .first_trial = trials.first,
+                             .threads = options.threads,
+                             .blocks = site.rows,
+                             .effort = effort_of(options.rules),
+                             .traced = options.traced};
     const std::vector<BlockRuns> runs = observe(site.campaign, problem.model(site, z), how);
     scores.push_back(
         {site.name, score(site.campaign, runs, site.rows, fit_scoring(fewest)), site.campaign.blocks.size()});

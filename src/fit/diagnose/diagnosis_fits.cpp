@@ -82,7 +82,10 @@ std::vector<Score> OutOfFold::objectives(const DiagnoseOptions& options, std::ui
   const std::uint32_t before = judges == Judges::Confirmation ? rules.fold_orders : 0;  // orders of the choice
   const std::vector<std::uint32_t> streams = problem_.streams();
   const std::vector<bool> rows = problem_.rows();
-  ObserveOptions how{options.trials.compare, options.seed, 0, options.threads, {}, {}, effort_of(rules.search)};
+  ObserveOptions how{.trials = options.trials.compare,
+                     .seed = options.seed,
+                     .threads = options.threads,
+                     .effort = effort_of(rules.search)};
   how.traced = options.traced;
   ScoreOptions scoring = fit_scoring();
   std::vector<Score> scores;

@@ -55,15 +55,13 @@ std::vector<Parameter> joined(std::vector<Parameter> ground, const std::vector<P
 }  // namespace
 
 ObserveOptions EffectFits::observe_options(std::uint32_t trials) const {
-  ObserveOptions how{trials,
-                     options_.seed,
-                     first_trial_of(options_, round_),
-                     options_.threads,
-                     rows_,
-                     {},
-                     effort_of(options_.rules.search)};
-  how.traced = options_.traced;
-  return how;
+  return {.trials = trials,
+          .seed = options_.seed,
+          .first_trial = first_trial_of(options_, round_),
+          .threads = options_.threads,
+          .blocks = rows_,
+          .effort = effort_of(options_.rules.search),
+          .traced = options_.traced};
 }
 
 FitOptions EffectFits::fit_options() const {

@@ -229,9 +229,13 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
                      const std::vector<bool>& rows, const ScoreTestOptions& options) {
   const auto observed = [&](const Model& model) {
     if (options.proceed && !options.proceed()) throw FitInterrupted{};
-    ObserveOptions how{options.trials, options.seed, 0, options.threads, rows, {}, effort_of(options.rules.search)};
-    how.traced = options.traced;
-    return observe(campaign, model, how);
+    return observe(campaign, model,
+                   {.trials = options.trials,
+                    .seed = options.seed,
+                    .threads = options.threads,
+                    .blocks = rows,
+                    .effort = effort_of(options.rules.search),
+                    .traced = options.traced});
   };
   const DiagnosisRules& rules = options.rules;
   const ResidualSpace space(campaign, base.runs, rules);

@@ -100,8 +100,7 @@ std::vector<DepositSource> sources_of(const DepositSpec& spec, const Terrain& te
                                       std::vector<std::string>& warnings) {
   const SourceLayer layer = read_sources(spec.sources.path, terrain, spec.release_height);
   warnings.insert(warnings.end(), layer.warnings.begin(), layer.warnings.end());
-  const auto of_height = [](const std::string& note) { return note.find("height of a cliff") != std::string::npos; };
-  if (std::any_of(layer.unread_notes.begin(), layer.unread_notes.end(), of_height))  // there is no --field here
+  if (layer.unread_height)  // there is no --field here
     warnings.push_back(spec.sources.path +
                        ": a field height is not read (it is mostly the height of a cliff): if it is the height of "
                        "release above the ground, call it release_height");

@@ -116,13 +116,12 @@ class AttributeReader {
   std::vector<std::string> unread_notes() const {
     std::vector<std::string> notes;
     for (const std::string& field : layer_.field_names()) {
-      const auto is_field = [&](const FieldUse& c) { return c.field == field; };
-      if (std::ranges::any_of(columns_, is_field)) continue;
+      if (is_read(field)) continue;
       const auto meant =
           std::ranges::find_if(columns_, [&](const FieldUse& c) { return EQUAL(c.name.c_str(), field.c_str()); });
       if (meant != columns_.end())
         notes.push_back(path_ + ": field " + field + " is not read: " + meant->field + " is read as " + meant->name);
-      if (EQUAL(field.c_str(), "height"))
+      if (is_height(field))
         notes.push_back(path_ + ": field " + field +
                         " is not read (it is mostly the height of a cliff): if it is the height of release above the "
                         "ground, give --field " +
@@ -132,7 +131,15 @@ class AttributeReader {
     return notes;
   }
 
+  bool has_unread_height() const {
+    return std::ranges::any_of(layer_.field_names(), [&](const std::string& f) { return is_height(f) && !is_read(f); });
+  }
+
  private:
+  static bool is_height(const std::string& field) { return EQUAL(field.c_str(), "height"); }
+  bool is_read(const std::string& field) const {
+    return std::ranges::find(columns_, field, &FieldUse::field) != columns_.end();
+  }
   FieldUse* column(const char* name) {
     const auto found = std::ranges::find(columns_, name, &FieldUse::name);
     return found == columns_.end() ? nullptr : &*found;
@@ -451,6 +458,7 @@ SourceLayer read_sources(const std::string& path, const Terrain& terrain, const 
   out.attributes = attributes.record();
   out.read_note = attributes.read_note();
   out.unread_notes = attributes.unread_notes();
+  out.unread_height = attributes.has_unread_height();
   layer.tell(out);
   return out;
 }

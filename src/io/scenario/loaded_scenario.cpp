@@ -187,6 +187,7 @@ SourceLayer load_sources(const ScenarioSpec& spec, const Terrain& terrain, const
   SourceLayer sources = read_sources(spec.sources.path, terrain, spec.release_height, spec.source_fields);
   out.notes.push_back(sources.read_note);
   out.notes.insert(out.notes.end(), sources.unread_notes.begin(), sources.unread_notes.end());
+  out.unread_height = sources.unread_height;
   check_diameters(parts, sources, spec.sources.path);
   out.warnings.insert(out.warnings.end(), spec.warnings.begin(), spec.warnings.end());
   warn_unused_diameter(spec, sources, out.warnings);

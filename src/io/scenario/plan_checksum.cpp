@@ -22,9 +22,8 @@ void strip_folder(NamedFile& file) {
 /// Whether the sources have a field `height`, which earlier builds read as the height of release, or
 /// `release_height`, which they did not read: such runs must not go on, or be repeated, as if they were the same.
 bool fields_changed_meaning(const LoadedScenario& loaded) {
-  const auto unread = [](const std::string& note) { return note.find("height of a cliff") != std::string::npos; };
   const auto read = [](const Setting& s) { return s.key == "sources.attributes.release_height"; };
-  return std::ranges::any_of(loaded.notes, unread) || std::ranges::any_of(loaded.settings, read);
+  return loaded.unread_height || std::ranges::any_of(loaded.settings, read);
 }
 
 }  // namespace

@@ -70,12 +70,12 @@ using TracedVertices = std::atomic<std::uint64_t>;
 struct ObserveOptions {
   std::uint32_t trials = 100;  ///< per block
   std::uint64_t seed = 1;
-  std::uint32_t first_trial = 0;  ///< number of the first trial; each number of a seed is another trajectory
-  int threads = 0;                ///< 0: as many as the machine has
-  std::vector<bool> blocks;       ///< true for those that are simulated; empty: all
-  std::function<bool()> proceed;  ///< called now and then, from any thread; false ends the work. May be empty
-  Effort effort = {};             ///< what each trajectory may cost; searches bound it
-  int lanes = 0;                  ///< trajectories in one instruction, as for Tracer; 0: as many as the processor has
+  std::uint32_t first_trial = 0;       ///< number of the first trial; each number of a seed is another trajectory
+  int threads = 0;                     ///< 0: as many as the machine has
+  std::vector<bool> blocks = {};       ///< true for those that are simulated; empty: all
+  std::function<bool()> proceed = {};  ///< called now and then, from any thread; false ends the work. May be empty
+  Effort effort = {};                  ///< what each trajectory may cost; searches bound it
+  int lanes = 0;  ///< trajectories in one instruction, as for Tracer; 0: as many as the processor has
   TracedVertices* traced = nullptr;  ///< those of this simulation are added; null: not counted
 };
 

@@ -24,6 +24,7 @@ struct LoadedScenario {
   std::vector<std::string> notes;            ///< what was read, for `run` and `check`; one line each
   std::vector<std::string> warnings;         ///< one line each
   std::shared_ptr<const ScenarioSpec> spec;  ///< content of the file and the flags; null for a profile
+  bool unread_height = false;                ///< the sources have a field height, which is not read
 };
 
 /// Settings of the command line. They override a scenario file or replace it.
