@@ -12,6 +12,7 @@ void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_TOP_PAD, 16 << 20);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that it takes; larger blocks go back when they are freed
 #endif
 }
 
