@@ -124,7 +124,7 @@ class Replay::Worker {
     replay_.report();
   }
 
-  /// What a block and the pieces that broke off it meet at each object.
+  /// Finds the contacts of a block with each object; those of its pieces, too.
   void find_contacts(const Release& release, const Path& path) {
     std::ranges::fill(here_, ObjectContact{});
     replay_.finder_.add(path, release.body, here_);

@@ -501,6 +501,7 @@ class Hazard(Case):
         self.simulate()
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
         self.assertIn("repeats the run for the objects: 3 200 trajectories of the recorded plan", done.stderr)
+        self.assertIn("energies of objects are the largest within the outline", done.stderr)
         rows = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         self.assertEqual([rows[name]["people"] for name in "ABC"], [3, 4, 1])
         said = dict(re.findall(r"talus: ([ABC]): (.*)", done.stderr))  # the most often hit first

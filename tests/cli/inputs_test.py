@@ -100,7 +100,9 @@ class Fields(InputCase):
         said = "diameter 2 m from Durchmesser (3 of 3 features), release_height 60 to 62 m from HEIGHT (3 of 3 features)"
         self.assertIn(said, done.stderr)
         self.assertNotIn("is not read", done.stderr)
-        self.assertIn(said, self.run_well("check", *self.flags(), *fields).stdout)
+        checked = self.run_well("check", *self.flags(), *fields).stdout
+        self.assertIn(said, checked)
+        self.assertRegex(checked, "diameters +3 features have a diameter of their own")  # not the 1.2 m that no block gets
         settings = {s["key"]: s for s in self.record()["settings"]}
         self.assertEqual(settings["sources.fields.release_height"]["value"], "HEIGHT")
         self.assertEqual(settings["sources.attributes.release_height"]["value"], "60 to 62 (3 of 3 features)")

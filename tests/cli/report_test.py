@@ -124,6 +124,15 @@ class Report(RunCase):
 
 
 class Content(Report):
+    def test_presets_of_zones_are_named(self):
+        """Also of a run of the complete scenario of another, which has every number of a zone beside its preset."""
+        write_features(self.path("zones.gpkg"), "zones", [(box(0, 100, 300, 60), ["road"])], [("zone", ogr.OFTString)])
+        self.write("s.toml", self.read_text("s.toml") + '[ground]\nfile = "zones.gpkg"\n[ground.zones.road]\npreset = "forest-road-3d"\n')
+        self.results(hazard=False)
+        self.run_well("run", self.path("out/scenario.toml"), "-o", self.path("again"), "-q")
+        for out in ("out", "again"):
+            self.assertIn("upper-talus-3d, forest-road-3d", self.page(out=out).text)
+
     def test_all_sections(self):
         self.results()
         page = self.page("--title", "Above the road", "--attribution", "Survey of the canton")

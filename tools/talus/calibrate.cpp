@@ -27,12 +27,12 @@ struct Options : CampaignCommand {
 
 std::vector<talus::BlockRuns> runs_of(const talus::Campaign& campaign, const talus::Model& model,
                                       const talus::io::Calibration& c, const std::vector<bool>& blocks) {
-  talus::ObserveOptions how{.trials = c.score_trials,
-                            .seed = c.options.seed,
-                            .first_trial = talus::kUnseen,
-                            .threads = c.options.threads,
-                            .blocks = blocks};
-  how.proceed = [] { return !interrupted(); };
+  const talus::ObserveOptions how{.trials = c.score_trials,
+                                  .seed = c.options.seed,
+                                  .first_trial = talus::kUnseen,
+                                  .threads = c.options.threads,
+                                  .blocks = blocks,
+                                  .proceed = [] { return !interrupted(); }};
   std::vector<talus::BlockRuns> runs = talus::observe(campaign, model, how);
   if (interrupted()) stop_interrupted();
   return runs;

@@ -191,8 +191,7 @@ std::string object_text(const talus::io::HazardRecord& record) {
          " m (larger cells are hit more often; --width 10 for an object 10 m wide, whatever the cell)";
 }
 
-/// What is asked of the hazard file, as far as it is known before the maps. Throws InputError for files that are not
-/// there.
+/// The record of what the command line asks for, still without results. Throws InputError for files that are not there.
 talus::io::HazardRecord asked_of(const Options& options) {
   talus::io::HazardRecord record;
   record.command = command_line();
@@ -210,11 +209,13 @@ int hazard(const Options& options) {
   catch_signals();
   const fs::path folder(options.folder), file = tally_file(folder);
   talus::io::HazardRecord record = asked_of(options);
-  record.header = talus::io::read_hazard_header(file);
   talus::io::StagedFiles staged(folder, "hazard.json", options.overwrite);
   std::optional<talus::io::LoadedScenario> plan;  // where its trajectories are traced again
   std::optional<talus::io::ObjectLayer> layer;    // its faults are found before the maps are made
-  if (!options.frequency.empty() || !options.objects.empty()) plan = recorded_plan(options, record);
+  if (!options.frequency.empty() || !options.objects.empty()) {
+    record.header = talus::io::read_hazard_header(file);
+    plan = recorded_plan(options, record);
+  }
   if (!options.objects.empty()) layer.emplace(options.objects, *plan, options.width);
   Progress progress(options.mode(), 0, options.frequency.empty() ? "evaluate" : "simulate");
   const auto survey = options.frequency.empty() ? survey_of(file, options.threads, progress, record)

@@ -85,8 +85,8 @@ std::vector<Score> OutOfFold::objectives(const DiagnoseOptions& options, std::ui
   ObserveOptions how{.trials = options.trials.compare,
                      .seed = options.seed,
                      .threads = options.threads,
-                     .effort = effort_of(rules.search)};
-  how.traced = options.traced;
+                     .effort = effort_of(rules.search),
+                     .traced = options.traced};
   ScoreOptions scoring = fit_scoring();
   std::vector<Score> scores;
   for (std::uint32_t number = 0; number < rules.fold_orders; ++number) {
