@@ -1,7 +1,7 @@
 # The library for other programs, find_package(talus): the engine (terrain and physics), which needs Eigen alone. Scenario
 # files, tallies and maps are the work of the program `talus`. docs/library.md
 set(public_headers talus.hpp
-  base/elementary.hpp base/expect.hpp base/lane.hpp base/random.hpp base/scratch.hpp base/shared_memory.hpp base/vector.hpp base/version.hpp
+  base/elementary.hpp base/expect.hpp base/lane.hpp base/not_set.hpp base/random.hpp base/scratch.hpp base/shared_memory.hpp base/vector.hpp base/version.hpp
   terrain/grid.hpp terrain/raster.hpp terrain/surface.hpp
   physics/barriers.hpp physics/block.hpp physics/ground.hpp physics/impact.hpp physics/line_piece.hpp physics/path.hpp physics/trace.hpp
   physics/world.hpp)

@@ -132,7 +132,7 @@ void HazardSurvey::fill(const CellWindow& window, std::size_t first, std::size_t
   for (int row = window.row; row < window.row + window.rows; ++row, place += static_cast<std::size_t>(window.columns)) {
     const Row& from = rows_[static_cast<std::size_t>(row)];
     const auto value = [&](std::size_t i, int column) -> double& {
-      return values[i * window.cells() + place + static_cast<std::size_t>(column - window.column)];
+      return values[(place + static_cast<std::size_t>(column - window.column)) * count + i];
     };
     for (int column = window.column; column < end; ++column)
       for (std::size_t i = 0; i < count; ++i)

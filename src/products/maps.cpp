@@ -58,33 +58,31 @@ struct TallyValues {
       std::ranges::fill(values, kNotGiven);
   }
 
-  /// A part of a row within one region. @param place  of its first cell in a band of `values`
-  void of_part(const CellWindow& part, std::size_t place, std::size_t band_size, const CellRule& rule,
-               std::span<double> values) const {
-    if (const Quiet state = quiet->of(part); state != Quiet::No) {
-      for (std::size_t band = 0; band < untouched.size(); ++band)
-        std::ranges::fill(values.subspan(band * band_size + place, part.cells()),
-                          state == Quiet::Terrain ? untouched[band] : kNotGiven);
+  /// A part of a row within one region.
+  void of_part(const CellWindow& part, const CellRule& rule, std::span<double> values) const {
+    const std::size_t bands = untouched.size();
+    if (const Quiet state = quiet->of(part); state == Quiet::NoTerrain) {
+      std::ranges::fill(values, kNotGiven);
+      return;
+    } else if (state == Quiet::Terrain) {
+      for (std::size_t i = 0; i < values.size(); i += bands) std::ranges::copy(untouched, &values[i]);
       return;
     }
     tally.memory().keep_below_limit();  // reading a record loads its neighbours too
-    std::vector<double> cell(untouched.size());
     const int end = part.column + part.columns;
     for (int column = part.column; column < end; ++column) tally.prefetch_record(column, part.row);
-    for (int column = part.column; column < end; ++column, ++place) {
-      of_cell(column, part.row, rule, cell);
-      for (std::size_t band = 0; band < cell.size(); ++band) values[band * band_size + place] = cell[band];
-    }
+    for (int column = part.column; column < end; ++column, values = values.subspan(bands))
+      of_cell(column, part.row, rule, values.first(bands));
   }
 
   void of_window(const CellWindow& window, const CellRule& rule, std::span<double> values) const {
     const int end = window.column + window.columns;
-    std::size_t place = 0;
     for (int row = window.row; row < window.row + window.rows; ++row)
       for (int column = window.column, next = 0; column < end; column = next) {
         next = std::min(end, (column / kRegionSide + 1) * kRegionSide);
-        of_part({column, row, next - column, 1}, place, window.cells(), rule, values);
-        place += static_cast<std::size_t>(next - column);
+        const std::size_t size = static_cast<std::size_t>(next - column) * untouched.size();
+        of_part({column, row, next - column, 1}, rule, values.first(size));
+        values = values.subspan(size);
       }
   }
 };

@@ -102,10 +102,6 @@ void Tracing::save_checkpoint() {
   all_saved_ = true;
 }
 
-void Tracing::save_rest() {
-  if (!checkpoint().empty() && !all_saved_) save_checkpoint();
-}
-
 void Tracing::interrupt() {
   if (simulation_.position().unit == 0 && simulation_.position().round == 0) stop_interrupted();
   if (!all_saved_) save_checkpoint();

@@ -40,8 +40,6 @@ class Tracing {
   /// Sum of the totals of all processes. Only the leader gets it.
   Totals totals();
   void save_checkpoint();
-  /// Saves what was traced since the last checkpoint. Does nothing if none was saved yet.
-  void save_rest();
   /// Throws `Interrupted` while the leader writes the results. A single process saves its work first; a process group
   /// resumes from the last checkpoint.
   [[noreturn]] void interrupt_writing();

@@ -6,13 +6,25 @@
 
 namespace talus {
 
+namespace {
+
+/// The same as `dammed` of a cell with eight neighbours. No branch for each of the sides: few of them can be foretold.
+bool dammed_inside(const float* z, std::ptrdiff_t row) {
+  const float here = *z;
+  const bool below_its_sides = static_cast<int>(here < z[-1]) & static_cast<int>(here < z[1]) &
+                               static_cast<int>(here < z[-row]) & static_cast<int>(here < z[row]);
+  return below_its_sides && (z[-row - 1] < here || z[-row + 1] < here || z[row - 1] < here || z[row + 1] < here);
+}
+
+bool is_inside(const Grid& grid, int column, int row) {
+  return column >= 1 && row >= 1 && column + 1 < grid.columns && row + 1 < grid.rows;
+}
+
+}  // namespace
+
 bool dammed(const Raster<float>& heights, int column, int row) {
   const Grid& grid = heights.grid;
-  if (column < 1 || row < 1 || column + 1 >= grid.columns || row + 1 >= grid.rows) return false;
-  const auto z = [&](int dx, int dy) { return heights.values[grid.index(column + dx, row + dy)]; };
-  const float here = z(0, 0);
-  if (!(here < z(-1, 0) && here < z(1, 0) && here < z(0, -1) && here < z(0, 1))) return false;
-  return z(-1, -1) < here || z(1, -1) < here || z(-1, 1) < here || z(1, 1) < here;
+  return is_inside(grid, column, row) && dammed_inside(&heights.at(column, row), grid.columns);
 }
 
 double dam_height(const Raster<float>& heights, int column, int row) {
@@ -23,20 +35,20 @@ double dam_height(const Raster<float>& heights, int column, int row) {
 }
 
 DamCount count_dammed(const Raster<float>& heights, const std::function<bool(int column, int row)>& counts) {
+  const Grid& grid = heights.grid;
   DamCount count;
   for_each_row(heights, [&](int row) {
-    for (int column = 0; column < heights.grid.columns; ++column) {
-      if (std::isnan(heights.values[heights.grid.index(column, row)])) continue;
-      ++count.cells;
-      if (dammed(heights, column, row) && (!counts || counts(column, row))) ++count.dammed;
-    }
+    const float* z = &heights.at(0, row);
+    for (int column = 0; column < grid.columns; ++column) count.cells += std::isnan(z[column]) ? 0U : 1U;
+    if (row < 1 || row + 1 >= grid.rows) return;
+    for (int column = 1; column + 1 < grid.columns; ++column)
+      if (dammed_inside(z + column, grid.columns) && (!counts || counts(column, row))) ++count.dammed;
   });
   return count;
 }
 
 double pit_depth(const Raster<float>& heights, int column, int row) {
-  const Grid& grid = heights.grid;
-  if (column < 1 || row < 1 || column + 1 >= grid.columns || row + 1 >= grid.rows) return 0.0;
+  if (!is_inside(heights.grid, column, row)) return 0.0;
   const float here = heights.at(column, row);
   double lowest = std::numeric_limits<double>::infinity();
   for (int j = row - 1; j <= row + 1; ++j)

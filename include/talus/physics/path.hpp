@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "talus/base/not_set.hpp"
 #include "talus/physics/barriers.hpp"
 #include "talus/physics/block.hpp"
 #include "talus/terrain/surface.hpp"
@@ -75,20 +76,9 @@ struct Broken {
   Block body;
 };
 
-/// Allocator of a buffer whose elements are not set when `resize` adds them.
+/// A buffer whose elements are not set when `resize` adds them.
 template <class T>
-struct NotSet : std::allocator<T> {
-  template <class Other>
-  struct rebind {  // NOLINT(readability-identifier-naming): the standard's name
-    using other = NotSet<Other>;
-  };
-  template <class Element, class... Values>
-  void construct(Element* element, Values&&... values) {
-    if constexpr (sizeof...(Values) > 0) ::new (static_cast<void*>(element)) Element{std::forward<Values>(values)...};
-  }
-};
-template <class T>
-using Buffer = std::vector<T, NotSet<T>>;
+using Buffer = std::vector<T, NotSet<std::allocator<T>>>;
 
 /// One trajectory: plain data between the engine and its readers (tallies, screens, recordings). Reused as a buffer.
 struct Path {

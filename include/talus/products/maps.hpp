@@ -42,8 +42,8 @@ struct Map {
   bool smallest_in_overviews = false;  ///< overviews show the smallest cell of a pixel, else the largest
   std::vector<std::string> classes{};  ///< names of the values 0, 1, ... if the values are classes
 
-  /// Fills the cells of a window: values[(band * window.rows + row) * window.columns + column], row 0 in the south; NaN
-  /// means no value. Several threads may call it at the same time.
+  /// Fills the cells of a window: values[(row * window.columns + column) * bands + band], row 0 in the south; NaN means
+  /// no value. Several threads may call it at the same time.
   std::function<void(const CellWindow& window, std::span<double> values)> fill{};
   /// The value of each band in all cells of a window, where it is known to be the same; else nothing. May be empty.
   std::function<std::optional<std::vector<double>>(const CellWindow& window)> everywhere{};

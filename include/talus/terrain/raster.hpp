@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "talus/base/not_set.hpp"
 #include "talus/base/scratch.hpp"
 #include "talus/base/shared_memory.hpp"
 #include "talus/terrain/grid.hpp"
@@ -16,6 +17,8 @@ template <class T>
 class Cells {
  public:
   Cells() = default;
+  /// Cells without a value yet: the thread that sets one is the first to touch its memory.
+  Cells(std::size_t size, MemoryPolicy memory) : own_(size, memory), data_(own_.data()), size_(size) {}
   Cells(std::size_t size, T fill, MemoryPolicy memory = {}) : own_(memory) {
     constexpr std::size_t kPiece = std::size_t{1} << 24U;
     own_.reserve(size);
@@ -60,7 +63,7 @@ class Cells {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
   }
-  ScratchVector<T> own_;
+  std::vector<T, NotSet<ScratchAllocator<T>>> own_;
   std::shared_ptr<SharedPiece> shared_;
   T* data_ = nullptr;
   std::size_t size_ = 0;
@@ -101,15 +104,13 @@ struct RasterMemory {
   SharedMemory* shared = nullptr;  ///< null: each process has its own
 };
 
-/// Makes the values of a raster and fills them by `read`: once per machine if its processes share memory, else in each
-/// process.
-///
-/// @param before  value of the cells before `read`, if they are not shared
+/// Makes the values of a raster and lets `read` set all of them: once per machine if its processes share memory, else
+/// in each process.
 template <class T, class Read>
-void fill_raster(Raster<T>& raster, T before, const RasterMemory& memory, Read read) {
+void fill_raster(Raster<T>& raster, const RasterMemory& memory, Read read) {
   const std::size_t cells = raster.grid.cells();
   if (memory.shared == nullptr) {
-    raster.values = Cells<T>(cells, before, memory.policy);
+    raster.values = Cells<T>(cells, memory.policy);
     read();
     return;
   }

@@ -19,7 +19,7 @@ constexpr double kLowest = -500.0, kHighest = 9000.0;  // heights on the earth, 
 constexpr double kFarFromZero = 50.0;                  // cells of height 0 are suspect where all others are farther [m]
 constexpr int kMostReaders = 4;                        // pieces at once, of 18 MB each
 
-/// Pieces of the file: heights in metres with NaN for what is missing.
+/// Reads pieces of the file.
 class HeightReader {
  public:
   explicit HeightReader(const std::string& path)
@@ -32,22 +32,23 @@ class HeightReader {
     masked_ = (band_.GetMaskFlags() & GMF_ALL_VALID) == 0;
   }
 
-  /// The heights of a piece, row by row from the north.
-  const std::vector<double>& read(const RasterPart& part) {
+  void read(const RasterPart& part) {
     const int columns = part.columns(), rows = part.rows();
     values_.resize(std::size_t(columns) * rows);
-    mask_.assign(values_.size(), 255);
+    if (masked_) mask_.resize(values_.size());
     if (band_.RasterIO(GF_Read, part.left, part.top, columns, rows, values_.data(), columns, rows, GDT_Float64, 0, 0,
                        nullptr) != CE_None ||
         (masked_ && band_.GetMaskBand()->RasterIO(GF_Read, part.left, part.top, columns, rows, mask_.data(), columns,
                                                   rows, GDT_Byte, 0, 0, nullptr) != CE_None))
       throw InputError(path_ + ": rows " + std::to_string(part.top) + " to " + std::to_string(part.bottom - 1) +
                        " cannot be read: " + messages_.take());
-    for (std::size_t i = 0; i < values_.size(); ++i) {
-      const bool there = mask_[i] != 0 && std::isfinite(values_[i]);
-      values_[i] = there ? values_[i] * scale_ + offset_ : std::numeric_limits<double>::quiet_NaN();
-    }
-    return values_;
+  }
+
+  /// A height of the piece that was read last [m]; NaN: missing.
+  /// @param i  counted row by row from the north-west
+  double height(std::size_t i) const {
+    const bool there = !(masked_ && mask_[i] == 0) && std::isfinite(values_[i]);
+    return there ? values_[i] * scale_ + offset_ : std::numeric_limits<double>::quiet_NaN();
   }
 
   /// The value of a height as stored in the file.
@@ -102,16 +103,18 @@ struct Counts {
 void read_piece(HeightReader& reader, const std::string& path, const RasterPart& part, Raster<float>& heights,
                 Counts& counts) {
   const Grid& grid = heights.grid;
-  const double* height = reader.read(part).data();
+  reader.read(part);
+  std::size_t i = 0;
   for (int row = part.top; row < part.bottom; ++row) {
     if (row % 64 == 0) heights.values.memory().keep_below_limit();
     float* out = heights.values.data() + grid.index(part.left, grid.rows - 1 - row);
-    for (int column = part.left; column < part.right; ++column, ++height, ++out) {
-      *out = static_cast<float>(*height);
-      if (std::isnan(*height)) continue;
-      if (!(*height >= kLowest && *height <= kHighest))
-        refuse_height(path, column, row, *height, text_of(reader.stored(*height)));
-      counts.add(*height);
+    for (int column = part.left; column < part.right; ++column, ++i, ++out) {
+      const double height = reader.height(i);
+      *out = static_cast<float>(height);
+      if (std::isnan(height)) continue;
+      if (!(height >= kLowest && height <= kHighest))
+        refuse_height(path, column, row, height, text_of(reader.stored(height)));
+      counts.add(height);
     }
   }
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "dataset.hpp"
 #include "dem_warning.hpp"
@@ -164,8 +163,7 @@ Terrain read_terrain(const std::string& path, const RasterMemory& memory, int th
     terrain.warnings.push_back(path + ": has " + std::to_string(dataset->GetRasterCount()) +
                                " bands: the first is taken as heights");
   terrain.heights.grid = grid;
-  fill_raster(terrain.heights, std::numeric_limits<float>::quiet_NaN(), memory,
-              [&] { read_heights(path, terrain, threads); });
+  fill_raster(terrain.heights, memory, [&] { read_heights(path, terrain, threads); });
   for (std::string& line : dem_warnings(path, dem_figures(terrain.heights), std::min(grid.cell_x, grid.cell_y)))
     terrain.warnings.push_back(std::move(line));
   return terrain;

@@ -121,12 +121,11 @@ auto TilePyramid<T>::filled(const Place& place) const -> Pixels {
     const CellWindow stripe{cells.column, cells.row + cells.rows - top - rows, cells.columns, rows};
     values.resize(stripe.cells() * bands_);
     map_.fill(stripe, values);
-    for (std::size_t band = 0; band < bands_; ++band)
-      for (int y = 0; y < rows; ++y) {  // from the north, where the map begins in the south
-        const double* from = &values[band * stripe.cells() + static_cast<std::size_t>(rows - 1 - y) * stripe.columns];
-        T* to = &pixels[pixel(0, top + y) + band];
-        for (int x = 0; x < stripe.columns; ++x, to += bands_) *to = stored<T>(from[x]);
-      }
+    const std::size_t row = static_cast<std::size_t>(stripe.columns) * bands_;
+    for (int y = 0; y < rows; ++y) {  // from the north, where the map begins in the south
+      const double* const from = &values[static_cast<std::size_t>(rows - 1 - y) * row];
+      std::transform(from, from + row, &pixels[pixel(0, top + y)], stored<T>);
+    }
   }
   return pixels;
 }

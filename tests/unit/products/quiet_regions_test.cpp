@@ -53,7 +53,7 @@ TEST(QuietRegions, AMapKnowsNothingThatItsCellsDoNotHave) {
         std::vector<double> values(window.cells() * map.bands.size());
         map.fill(window, values);
         for (std::size_t i = 0; i < values.size(); ++i) {
-          const double expected = (*all)[i / window.cells()];
+          const double expected = (*all)[i % map.bands.size()];
           ASSERT_TRUE(values[i] == expected || (std::isnan(values[i]) && std::isnan(expected))) << map.name;
         }
       }
