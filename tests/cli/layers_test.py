@@ -1,4 +1,5 @@
 """The common job without a scenario file: layers and fields by name, screens, zones, frequency and thresholds by flags."""
+import csv
 import os
 import shlex
 import subprocess
@@ -6,7 +7,7 @@ import unittest
 
 from osgeo import gdal, ogr
 
-from support import NORTH, WEST, Case, box, heights, rows_of, system, write_dem
+from support import NORTH, WEST, Case, box, heights, rows_of, system, write_dem, write_features
 
 
 class Layers(Case):
@@ -21,6 +22,9 @@ class Layers(Case):
             feature.SetGeometry(ogr.CreateGeometryFromWkt(box(x, 230, 10, 10)))
             layer.CreateFeature(feature)
         self.flags = ["--dem", self.path("dem.tif"), "--trajectories", "5"]
+
+    def rows(self, name):
+        return list(csv.DictReader(self.read_text(name).splitlines()))
 
     def test_a_layer_is_named_or_the_file_is_refused(self):
         site = self.path("site.gpkg")
@@ -76,6 +80,66 @@ class Layers(Case):
         done = self.run_well("hazard", self.path("out"), "--overwrite")
         self.assertIn("talus.qgs was saved in QGIS and stays as it is", done.stderr)
         self.assertIn("saveDateTime", self.read_text(project))
+
+    def test_objects_whose_fields_have_other_names(self):
+        """As one whose fields have the usual names."""
+        self.run_well("run", *self.flags, "--sources", self.path("site.gpkg|layername=cliffs"), "--frequency", "1", "-o", self.path("out"))
+        road = f"LINESTRING ({WEST + 155} {NORTH - 120},{WEST + 155} {NORTH - 200})"  # down the slope
+        shapes = [(road, [12.0, "Strasse"]), (box(140, 150, 10, 8), [None, "Haus"])]
+        write_features(self.path("usual.gpkg"), "o", shapes, [("width", ogr.OFTReal), ("name", ogr.OFTString)])
+        write_features(self.path("other.gpkg"), "o", shapes, [("Breite", ogr.OFTReal), ("Name des Hauses", ogr.OFTString)])
+        hazard = ["hazard", self.path("out"), "--overwrite", "--objects"]
+        self.run_well(*hazard, self.path("usual.gpkg"))
+        usual = [(row["object"], row["frequency"]) for row in self.rows("out/objects.csv")]
+        self.assertEqual([name for name, _ in usual], ["Strasse", "Haus"])
+        other = [*hazard, self.path("other.gpkg")]
+        done = self.run_well(*other, "--width-field", "Breite", "--name-field", "Name des Hauses")
+        self.assertEqual([(row["object"], row["frequency"]) for row in self.rows("out/objects.csv")], usual)
+        self.assertIn("lines: 1 as wide as their field Breite says", done.stderr)
+        self.assertNotIn("no width", done.stderr)
+        done = self.run_well(*other)
+        self.assertIn(f"warning: {self.path('other.gpkg')}: 1 line has no width and counts as 0 m wide", done.stderr)
+        self.assertIn("the fields Breite, Name des Hauses", done.stderr)
+        self.assertIn("objects are called by the numbers of their features", done.stderr)
+        self.assertLess(float(self.rows("out/objects.csv")[0]["frequency"]), float(usual[0][1]))
+        self.assertNotIn("no width", self.run_well(*other, "--width", "12").stderr)
+        self.assertEqual(self.rows("out/objects.csv")[0]["frequency"], usual[0][1])
+        self.fails(2, "has no field 'Breit'", "did you mean 'Breite'?", arguments=[*other, "--width-field", "Breit"])
+        self.fails(2, "has no field 'width'", arguments=[*other, "--width-field", "width"])
+        self.fails(2, "--objects", arguments=["hazard", self.path("out"), "--overwrite", "--name-field", "name"])
+
+    def test_an_object_without_geometry_is_left_out(self):
+        self.run_well("run", *self.flags, "--sources", self.path("site.gpkg|layername=cliffs"), "--frequency", "1", "-o", self.path("out"))
+        write_features(self.path("houses.gpkg"), "houses", [(box(140, 150, 10, 8), ["A"]), (box(160, 150, 10, 8), ["B"])],
+                       [("name", ogr.OFTString)])
+        file = ogr.Open(self.path("houses.gpkg"), 1)
+        layer = file.GetLayer()
+        layer.CreateFeature(ogr.Feature(layer.GetLayerDefn()))
+        layer = None
+        file = None
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
+        self.assertIn("objects without geometry, which have no results: features 3", done.stderr)
+        self.assertEqual([row["object"] for row in self.rows("out/objects.csv")], ["A", "B"])
+        done = self.run_well("hazard", self.path("out"), "--overwrite")
+        self.assertRegex(done.stderr, "warning: removed, as not asked for this time: .*objects.csv")
+
+    def test_edited_candidates_are_not_replaced(self):
+        cells = self.path("cells.gpkg")
+        sources = ["sources", "--dem", self.path("dem.tif"), "--slope", "10", "-o", cells, "--overwrite"]
+        self.run_well(*sources)
+        self.run_well(*sources)
+        file = ogr.Open(cells, 1)
+        file.GetLayerByName("source_polygons").DeleteFeature(1)
+        file = None
+        self.fails(2, "was edited after talus had written it (source_polygons)", "give a new name", arguments=sources)
+        file = ogr.Open(cells)
+        self.assertNotIn(1, [feature.GetFID() for feature in file.GetLayerByName("source_polygons")])
+
+    def test_diameters_of_some_features(self):
+        write_features(self.path("some.gpkg"), "cliffs", [(box(140, 230, 10, 10), [0.6]), (box(200, 230, 10, 10), [None])],
+                       [("diameter", ogr.OFTReal)])
+        done = self.run_well("check", *self.flags, "--sources", self.path("some.gpkg"), "--diameter", "1.2")
+        self.assertRegex(done.stdout, "diameters +1.2 m, of features without one of their own\n +1 feature has a diameter of its own")
 
     def test_the_job_without_toml(self):
         zones = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("zones.gpkg"))

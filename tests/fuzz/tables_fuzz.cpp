@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     io::RunFlags flags;
     flags.scenario = fuzz::site() / "tables.toml";
     io::LoadedScenario loaded = io::load_scenario(flags);
-    if (which == 4) io::ObjectLayer(file, loaded, 4.0);
+    if (which == 4) io::ObjectLayer(file, loaded, {.line_width = 4.0});
     if (which == 5) io::apply_weighting(file, loaded.scenario);
   });
   return 0;

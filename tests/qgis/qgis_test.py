@@ -231,6 +231,7 @@ class Provider(Case):
             self.assertFalse(can)
             self.assertIn("/nowhere/talus", message)
             self.assertIn("apt install", message)
+            self.assertEqual(run.checkParameterValues({"DEM": DEM}, QgsProcessingContext()), (False, message))
         finally:
             os.environ["TALUS"] = before
         self.assertTrue(program.path())
@@ -287,6 +288,37 @@ class ByQgisProcess(Case):
     def test_a_temporary_folder(self):
         text = self.call("run", f"DEM={DEM}", f"SOURCES={VALLEY}/cliffs.shp", "TRAJECTORIES=1", "OUT=TEMPORARY_OUTPUT")
         self.assertRegex(text, r"RECORD:\s+\S+/OUT/run.json")
+        self.assertIn("temporary folder, which QGIS removes", text)
+
+    def few_blocks(self):
+        """The first twelve blocks of the campaign of elm."""
+        folder = self.path("few")
+        shutil.copytree(os.path.join(HERE, "../../data/elm"), folder)
+        for name, rows in (("blocks", 12), ("stops", 12), ("passages", 24)):
+            with open(f"{folder}/{name}.csv", "r+", encoding="utf-8") as file:
+                kept = file.readlines()[:1 + rows]
+                file.seek(0)
+                file.writelines(kept)
+                file.truncate()
+        return folder + "/campaign.toml"
+
+    def test_profile(self):
+        text = self.call("profile", f"PROFILE={HERE}/../../data/profile/profile.toml", "TRAJECTORIES=20", f"OUT={self.path('out')}")
+        self.assertEqual(self.record()["released"], 20)
+        self.assertIn(self.path("out/profile.svg"), text)
+
+    def test_calibrate_then_diagnose(self):
+        campaign = self.few_blocks()
+        text = self.call("calibrate", f"CAMPAIGN={campaign}", "FIT=phi", "TRIALS=20", "STARTS=1", f"OUT={self.path('fit')}")
+        self.assertIn(f"FITTED:\t{self.path('fit/fitted.toml')}", text)
+        fitted = self.path("fit/fitted.toml")
+        text = self.call("diagnose", f"CAMPAIGN={campaign}", "FIT=phi", f"PARAMETERS={fitted}", "TRIALS=10", "TEST_TRIALS=10", "BASE_FITS=1",
+                         "MOST_EFFECTS=1", "NO_NESTED=true", f"OUT={self.path('why')}")
+        self.assertIn(f"REPORT:\t{self.path('why/report.html')}", text)
+        with open(self.path("why/diagnosis.json"), encoding="utf-8") as file:
+            command = json.load(file)["command"]
+        for word in ("--base-fits=1", "--no-nested", "--fit=phi", f"--parameters={fitted}"):
+            self.assertIn(word, command)
 
     def test_sources_and_check(self):
         self.call("sources", f"DEM={DEM}", f"OUT={self.path('cells.gpkg')}", "SLOPE=50")
@@ -772,6 +804,19 @@ class FromPython(Case):
         self.assertEqual((found[-1]["id"], float(found[-1]["width"])), ("road", 6.0))
         # to EPSG:4326 and back: some mm, and so a block more or less at the edge
         self.assertAlmostEqual(float(found[-1]["trajectories"]) / float(wanted[-1]["trajectories"]), 1.0, delta=0.02)
+
+    def test_fields_of_objects_by_name(self):
+        """The road counts as wide as its field Breite, and is called by its field Strasse."""
+        self.run_algorithm("run", self.inputs(FREQUENCY_FIELD="frequency", TRAJECTORIES=2))
+        gdal.VectorTranslate(self.path("names.gpkg"), os.path.join(VALLEY, "screens.gpkg"), format="GPKG", layerName="road",
+                             SQLDialect="sqlite", SQLStatement="SELECT geom, 'Dorfstrasse' AS Strasse, 6 AS Breite FROM screens"
+                             " WHERE id = 'road'")
+        log = Log()
+        _, good = self.run_algorithm("objects", {"FOLDER": self.path("out"), "OBJECTS": self.path("names.gpkg"), "LOAD": False,
+                                                 "WIDTH_FIELD": "Breite", "NAME_FIELD": "Strasse"}, log)
+        self.assertTrue(good, log.textLog())
+        self.assertNotIn("no width", log.textLog())
+        self.assertEqual([row["object"] for row in self.rows("out/objects.csv")], ["Dorfstrasse"])
 
     def test_a_script_may_give_selected_objects(self):
         self.run_algorithm("run", self.inputs(FREQUENCY_FIELD="frequency", TRAJECTORIES=2))

@@ -196,12 +196,14 @@ void print_blocks(const Scenario& scenario) {
   const bool all_own = own > 0 && own == std::ssize(scenario.features);
   for (const talus::BlockClass& c : blocks.classes)
     if (!all_own)
-      line("diameters",
-           range_text(c.diameter, "m") + (blocks.classes.size() > 1 ? ", weight " + talus::text_of(c.weight) : ""));
+      line("diameters", range_text(c.diameter, "m") +
+                            (blocks.classes.size() > 1 ? ", weight " + talus::text_of(c.weight) : "") +
+                            (own > 0 ? ", of features without one of their own" : ""));
   if (own > 0)
-    line(all_own ? "diameters" : "",
-         own == 1 ? "1 feature has a diameter of its own"
-                  : count_text(static_cast<std::uint64_t>(own)) + " features have a diameter of their own");
+    line(all_own ? "diameters" : "", own == 1 ? "1 feature has a diameter of its own"
+                                              : count_text(static_cast<std::uint64_t>(own)) +
+                                                    (all_own ? "" : " of " + count_text(scenario.features.size())) +
+                                                    " features have a diameter of their own");
   line("releases", count_text(scenario.sources.size()) + " x " + count_text(scenario.trajectories) + " = " +
                        count_text(scenario.released()) + " trajectories, seed " + std::to_string(scenario.seed));
   line("thresholds", "energy " + list_text(scenario.output.energy_thresholds, "kJ") + "; height " +

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Options {
-  std::string folder, matrix, objects, frequency;
+  std::string folder, matrix, objects, frequency, width_field, name_field;
   double width = 0.0;  // of the object [m]; 0: the cell
   int threads = 0;
   std::string progress;
@@ -43,8 +43,9 @@ fs::path tally_file(const fs::path& folder) {
   if (const auto file = talus::io::hazard_file_of(folder)) return *file;
   throw talus::InputError(
       folder.string() +
-      ": this run has no annual frequencies; give the sources a field frequency (events per year), or the scenario "
-      "[frequency] total (--frequency), per_area or power_law, and run again");
+      ": this run has no annual frequencies; give the sources a field frequency (events per year), or the run one for "
+      "all its sources together ([frequency] total in its scenario, or a flag of talus run; per_area, power_law), and "
+      "run again");
 }
 
 /// What an object of some width needs: class limits that are thresholds of the run.
@@ -157,7 +158,8 @@ std::vector<std::string> write_objects(const Options& options, const talus::io::
   for (const std::string& warning : layer.warnings()) record.warnings.push_back(warning);
   if (const std::string text = layer.not_copied_text(record.header.rules, record.matrix.years); !text.empty())
     record.warnings.push_back(text);
-  if (!options.quiet && !layer.lines_text().empty()) say("", options.objects + ": " + layer.lines_text());
+  for (const std::string& text : {layer.lines_text(), layer.names_text()})
+    if (!options.quiet && !text.empty()) say("", options.objects + ": " + text);
   if (!options.quiet)
     say("", "repeats the run for the objects: " + count_text(loaded.scenario.released()) +
                 " trajectories of the recorded plan, with the same bits");
@@ -205,6 +207,14 @@ talus::io::HazardRecord asked_of(const Options& options) {
   return record;
 }
 
+talus::io::ObjectFields object_fields(const Options& options) {
+  talus::io::ObjectFields fields;
+  fields.line_width = options.width;
+  fields.width = options.width_field;
+  fields.name = options.name_field;
+  return fields;
+}
+
 int hazard(const Options& options) {
   catch_signals();
   const fs::path folder(options.folder), file = tally_file(folder);
@@ -216,7 +226,7 @@ int hazard(const Options& options) {
     record.header = talus::io::read_hazard_header(file);
     plan = recorded_plan(options, record);
   }
-  if (!options.objects.empty()) layer.emplace(options.objects, *plan, options.width);
+  if (!options.objects.empty()) layer.emplace(options.objects, *plan, object_fields(options));
   Progress progress(options.mode(), 0, options.frequency.empty() ? "evaluate" : "simulate");
   const auto survey = options.frequency.empty() ? survey_of(file, options.threads, progress, record)
                                                 : reweighted_survey(options, plan->scenario, progress, record);
@@ -249,8 +259,9 @@ int hazard(const Options& options) {
   refresh_project(folder);
   if (options.quiet) return 0;
   if (!removed.empty())
-    say("", "removed, as not asked for this time: " + talus::joined(removed) +
-                " (of the earlier talus hazard in this folder)");
+    say(std::ranges::count(removed, "objects.csv") > 0 ? "warning" : "",
+        "removed, as not asked for this time: " + talus::joined(removed) +
+            " (of the earlier talus hazard in this folder)");
   for (const std::string& warning : record.warnings) say("warning", warning);
   say_old_report(folder);
   for (const std::string& object : objects) say("", object);
@@ -276,6 +287,13 @@ void add_hazard(CLI::App& app, Action& action) {
            "polygons or lines (as wide as their field width, else --width, else 0 m): how often each is hit, "
            "with which energy, and from where; repeats the run"),
        file_of({"vector"}));
+  CLI::Option* const objects = command->get_option("--objects");
+  command
+      ->add_option("--width-field", options->width_field, "the field of --objects with the width of a line [m]; width")
+      ->needs(objects);
+  command
+      ->add_option("--name-field", options->name_field, "the field of --objects with their names; name, id or object")
+      ->needs(objects);
   with(command->add_option("--frequency", options->frequency,
                            "another weighting (TOML: [frequency], [features]); repeats the run"),
        file_of({"toml"}));

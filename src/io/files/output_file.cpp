@@ -10,6 +10,7 @@
 #include "io/gdal/dataset.hpp"
 #include "own_files.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
 
 namespace talus::io {
 
@@ -31,6 +32,17 @@ Dataset earlier_file(const fs::path& path) {
   }
 }
 
+/// Layers that were edited after Talus had written them: it writes dates of 1970, editors that of the change.
+std::vector<std::string> edited_layers(GDALDataset& file) {
+  std::vector<std::string> edited;
+  OGRLayer* const rows =
+      file.ExecuteSQL("SELECT table_name FROM gpkg_contents WHERE last_change NOT LIKE '1970-%'", nullptr, nullptr);
+  if (rows == nullptr) return edited;
+  while (const Feature row{rows->GetNextFeature()}) edited.emplace_back(row->GetFieldAsString(0));
+  file.ReleaseResultSet(rows);
+  return edited;
+}
+
 /// --overwrite replaces what Talus has written, no other file of the same name. Throws InputError.
 void refuse_foreign(const fs::path& path) {
   const Dataset file = earlier_file(path);
@@ -41,6 +53,9 @@ void refuse_foreign(const fs::path& path) {
   if (!foreign.empty())
     throw InputError(path.string() + ": --overwrite replaces only what talus has written, and this file has other " +
                      "layers: " + shown_names(foreign) + "; give a new name, or remove it yourself");
+  if (const auto edited = edited_layers(*file); !edited.empty())
+    throw InputError(path.string() + ": was edited after talus had written it (" + joined(edited) +
+                     "), and --overwrite would lose that; give a new name, or remove it yourself");
 }
 
 /// The absolute path. Throws InputError if no file can be written there.

@@ -93,7 +93,7 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
   out.field = name;
   if (field < 0) {
     throw InputError(request.path + ": has no field '" + name + "'" + known_names(name, layer.field_names()) +
-                     ": say which holds the zone by field in [ground]");
+                     ": say which holds the zone by --zone-field, or field in [ground]");
   }
   FieldUse use{name, layer.field_names()[static_cast<std::size_t>(field)], {}, field, true};
   std::size_t features = 0;

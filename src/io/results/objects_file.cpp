@@ -112,7 +112,7 @@ void refuse_same_fields(const Layer& layer, const std::string& path) {
 
 /// The first of some fields (-1: not there) that holds a text, else the number of the feature. All texts must be UTF-8:
 /// they are copied.
-std::string object_name(const Layer& layer, const OGRFeature& feature, std::initializer_list<int> of_name) {
+std::string object_name(const Layer& layer, const OGRFeature& feature, const std::vector<int>& of_name) {
   for (int field = 0; field < feature.GetFieldCount(); ++field) layer.text(feature, field);
   for (const int field : of_name)
     if (std::string name = layer.text(feature, field); !name.empty()) return name;
@@ -130,7 +130,11 @@ struct ObjectLayer::State {
   std::vector<double> without_height;  // share of each where the terrain has no height
   std::vector<std::string> warnings;
   double line_width = 0.0;
+  std::string width_field = "width";
+  std::vector<std::string> fields;  // of the layer
+  bool named = false;               // a field may hold the names
   std::size_t lines_of_their_width = 0, lines_of_given_width = 0, polygons_with_width = 0;
+  std::vector<std::string> without_geometry;  // features that are left out
 
   bool known(std::size_t i) const { return without_height[i] < 1.0; }
   bool is_partial(std::size_t i) const { return known(i) && without_height[i] >= kNoticedWithoutHeight; }
@@ -138,6 +142,7 @@ struct ObjectLayer::State {
   std::string lack(std::size_t i) const { return percent(without_height[i], without_height[i] < 0.995 ? 2 : 4); }
   void warn_of_places(const std::string& path, const std::vector<bool>& off_map);
   void warn_of_names(const std::string& path);
+  void warn_of_widths(const std::string& path);
 
   /// Features whose blocks reach an object, the largest share first: index and share.
   static std::vector<std::pair<std::size_t, double>> sources_of(const ObjectHits& hits) {
@@ -191,7 +196,39 @@ void ObjectLayer::State::warn_of_names(const std::string& path) {
                        listed(std::vector<std::string>(twice.begin(), twice.end())));
 }
 
-ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, double line_width)
+/// A road of no width is hit less often than it is.
+void ObjectLayer::State::warn_of_widths(const std::string& path) {
+  if (polygons_with_width > 0)
+    warnings.push_back(path + ": the field " + width_field + " of " + std::to_string(polygons_with_width) +
+                       " polygons is not used: it is for lines; a polygon is what it covers");
+  if (lines_of_given_width == 0 || line_width > 0.0) return;
+  warnings.push_back(path + ": " + std::to_string(lines_of_given_width) +
+                     (lines_of_given_width == 1 ? " line has no width and counts" : " lines have no width and count") +
+                     " as 0 m wide: a road of some width is hit more often (unsafe); give --width, "
+                     "or the field of its width (--width-field; the layer has " +
+                     (fields.empty() ? "no fields" : "the fields " + joined(fields)) + ")");
+}
+
+namespace {
+
+/// Index of a field that is asked for. Throws InputError if it is not there.
+int asked_field(const Layer& layer, const std::string& path, const std::string& flag, const std::string& field) {
+  const int index = layer.field(field);
+  if (index < 0)
+    throw InputError("flag --" + flag + ": " + path + " has no field '" + field + "'" +
+                     known_names(field, layer.field_names()));
+  return index;
+}
+
+/// Indices of the fields that may hold the name of an object, the first one counts.
+std::vector<int> fields_of_name(const Layer& layer, const std::string& path, const std::string& asked) {
+  if (!asked.empty()) return {asked_field(layer, path, "name-field", asked)};
+  return {layer.field("name"), layer.field("id"), layer.field("object")};
+}
+
+}  // namespace
+
+ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, const ObjectFields& fields)
     : state_(std::make_unique<State>()) {
   Terrain terrain;
   terrain.geo = loaded.geo;
@@ -199,45 +236,56 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
   const Grid& grid = terrain.heights.grid;
   Layer layer("objects", path, terrain);
   refuse_same_fields(layer, path);
-  const int width_field = layer.field("width");
+  state_->line_width = fields.line_width;
+  state_->fields = layer.field_names();
+  if (!fields.width.empty()) state_->width_field = fields.width;
+  const int width_field =
+      fields.width.empty() ? layer.field(state_->width_field) : asked_field(layer, path, "width-field", fields.width);
+  const std::vector<int> name_fields = fields_of_name(layer, path, fields.name);
+  state_->named = std::ranges::any_of(name_fields, [](int field) { return field >= 0; });
   std::vector<bool> off_map;
   OGREnvelope all;
   for_each_feature(layer, [&](Feature& feature) {
     Parts parts = layer.parts(*feature);
-    if (parts.empty() || !parts.points.empty())
-      throw InputError(layer.label(*feature) + ": " + (parts.empty() ? "has no geometry" : "is a point") +
-                       ", must be a polygon or a line that blocks may hit" +
-                       (parts.empty() ? "" : "; make areas of points first, as wide as the houses (Buffer, in QGIS)"));
+    if (parts.empty()) {
+      state_->without_geometry.push_back(std::to_string(feature->GetFID()));
+      return;
+    }
+    if (!parts.points.empty())
+      throw InputError(layer.label(*feature) +
+                       ": is a point, must be a polygon or a line that blocks may hit; make areas of points first, as "
+                       "wide as the houses (Buffer, in QGIS)");
     const OGREnvelope box = parts.envelope();
-    state_->names.push_back(
-        object_name(layer, *feature, {layer.field("name"), layer.field("id"), layer.field("object")}));
+    state_->names.push_back(object_name(layer, *feature, name_fields));
     off_map.push_back(wholly_off(box, grid));
     all.Merge(box);
     std::optional<double> width;
     if (!parts.lines.empty()) {
-      width = layer.number(*feature, width_field, "width", kWidth);
+      width = layer.number(*feature, width_field, state_->width_field, kWidth);
       if (width.value_or(0.0) > kWidestObject)
-        state_->warnings.push_back(layer.label(*feature) + ": width = " + text_of(*width) +
+        state_->warnings.push_back(layer.label(*feature) + ": " + state_->width_field + " = " + text_of(*width) +
                                    " m, wider than any road: must be in metres");
       (width ? state_->lines_of_their_width : state_->lines_of_given_width) += 1;
     } else if (!layer.text(*feature, width_field).empty()) {
       ++state_->polygons_with_width;
     }
-    state_->objects.push_back(object_of(parts, width.value_or(line_width)));
+    state_->objects.push_back(object_of(parts, width.value_or(fields.line_width)));
     state_->without_height.push_back(object_without_height(state_->objects.back(), loaded.scenario.surface.heights()));
     state_->parts.push_back(std::move(parts));
     state_->features.push_back(std::move(feature));
   });
-  if (state_->objects.empty()) throw InputError(path + ": has no features, must have polygons or lines");
+  if (state_->objects.empty())
+    throw InputError(path + (state_->without_geometry.empty() ? ": has no features" : ": no feature has a geometry") +
+                     ", must have polygons or lines");
   if (std::ranges::count(off_map, false) == 0) throw InputError(off_dem_text(path, all, layer, terrain));
   if (layer.is_csv()) state_->features = with_numbers(state_->features);
   state_->warn_of_places(path, off_map);
   state_->warn_of_names(path);
-  if (state_->polygons_with_width > 0)
-    state_->warnings.push_back(path + ": the field width of " + std::to_string(state_->polygons_with_width) +
-                               " polygons is not used: it is for lines; a polygon is what it covers");
+  state_->warn_of_widths(path);
+  if (!state_->without_geometry.empty())
+    state_->warnings.push_back(path + ": objects without geometry, which have no results: features " +
+                               listed(state_->without_geometry));
   state_->file = path;
-  state_->line_width = line_width;
   for (std::string& line : layer.warnings()) state_->warnings.push_back(std::move(line));
 }
 
@@ -253,12 +301,19 @@ const std::vector<std::string>& ObjectLayer::warnings() const {
 std::string ObjectLayer::lines_text() const {
   const State& s = *state_;
   std::string text;
-  if (s.lines_of_their_width > 0) text = std::to_string(s.lines_of_their_width) + " as wide as their field width says";
+  if (s.lines_of_their_width > 0)
+    text = std::to_string(s.lines_of_their_width) + " as wide as their field " + s.width_field + " says";
   if (s.lines_of_given_width > 0)
-    text += (text.empty() ? "" : "; ") + std::to_string(s.lines_of_given_width) + " without a field width, taken as " +
-            text_of(s.line_width) + " m wide" +
-            (s.line_width > 0.0 ? " (--width)" : " (a field width, or --width, makes them wider)");
+    text += (text.empty() ? "" : "; ") + std::to_string(s.lines_of_given_width) + " without a field " + s.width_field +
+            ", taken as " + text_of(s.line_width) + " m wide" + (s.line_width > 0.0 ? " (--width)" : "");
   return text.empty() ? text : "lines: " + text;
+}
+
+std::string ObjectLayer::names_text() const {
+  if (state_->named || state_->fields.empty()) return {};
+  return "objects are called by the numbers of their features, as there is no field name, id or object: --name-field "
+         "takes another one (" +
+         joined(state_->fields) + ")";
 }
 
 namespace {

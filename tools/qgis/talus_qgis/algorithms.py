@@ -55,11 +55,11 @@ ALGORITHMS = [
      "advanced": SCENARIO_INPUTS["advanced"] | {"overwrite"}},
     {"id": "sources", "command": "sources", "help": "sources", "bands": {"dem"}, "order": ["dem", "slope", "out"], "phases": [],
      "geopackage": ("out", ["source_polygons", "source_points"])},
-    {"id": "hazard", "command": "hazard", "help": "hazard", "order": ["folder", "width", "curves", "objects", "overwrite"],
+    {"id": "hazard", "command": "hazard", "help": "hazard", "order": ["folder", "width", "curves", "objects", "width-field", "name-field", "overwrite"],
      "advanced": {"matrix", "frequency"}, "phases": ["evaluate", "write", "simulate"], "folder": "folder",
      "several": {"objects"},
      "rasters": ["hazard_class", "annual_frequency"], "vectors": ["objects"], "record": "hazard.json"},
-    {"id": "objects", "command": "hazard", "help": "hazard", "order": ["folder", "objects", "width", "overwrite"],
+    {"id": "objects", "command": "hazard", "help": "hazard", "order": ["folder", "objects", "width", "width-field", "name-field", "overwrite"],
      "required": {"objects"}, "advanced": {"matrix", "frequency", "curves"}, "phases": ["evaluate", "write", "simulate"], "folder": "folder",
      "several": {"objects"},
      "rasters": ["hazard_class", "annual_frequency"], "vectors": ["objects"],
@@ -307,6 +307,9 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
     # Work
 
     def checkParameterValues(self, parameters, context):
+        there, fault = self.canExecute()
+        if not there:  # without the program its parameters are not known
+            return False, fault
         needs = self.table.get("needs")
         if needs and not any(all(parameters.get(key_of(name)) not in (None, "") for name in names) for names in needs):
             return False, tr("Give the terrain and the sources, or a scenario file.")
@@ -406,6 +409,9 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         except program.ProgramMissing as fault:
             raise QgsProcessingException(str(fault)) from fault
         folder = self._folder(parameters, context)
+        if self.table.get("folder") == "out" and self._is_in_temporary(folder):
+            feedback.pushWarning(tr("The results go into a temporary folder, which QGIS removes when it is closed: name a folder "
+                                    "under \"Results\" to keep them."))
         words = self._words(parameters, context, feedback, layers.folder_beside(folder))
         rounds = self.parameterAsInt(parameters, "ROUNDS", context) if parameters.get("ROUNDS") else 1
         begin = time.time()
@@ -416,11 +422,15 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             raise QgsProcessingException(f"{cancelled} {self._after_cancel(folder)}".strip()) from cancelled
         return self._results(parameters, context, folder, begin)
 
+    @staticmethod
+    def _is_in_temporary(folder):
+        return folder.startswith(os.path.normpath(QgsProcessingUtils.tempFolder()) + os.sep)
+
     def _after_cancel(self, folder):
         """How to go on."""
         if not any(p["name"] == "resume" for p in self.described()):
             return ""
-        if folder.startswith(os.path.normpath(QgsProcessingUtils.tempFolder()) + os.sep):
+        if self._is_in_temporary(folder):
             return tr("A run into a temporary folder cannot be resumed, as QGIS takes another one at the next run: name a "
                       "folder under \"Results\" where you want to go on.")
         return tr("What a run has traced is kept: start it again with the same inputs and \"Resume\".")

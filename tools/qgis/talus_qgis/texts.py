@@ -12,6 +12,7 @@ LABELS = {
     "diameter_min-field": ("Field: smallest diameter [m]", "Feld: kleinster Durchmesser [m]"),
     "diameter_max-field": ("Field: largest diameter [m]", "Feld: grösster Durchmesser [m]"),
     "name-field": ("Field: name", "Feld: Name"),
+    "width-field": ("Field: width of lines", "Feld: Breite der Linien"),
     "field": ("Field: ...", "Feld: ..."),
     "diameter": ("Diameter of the blocks", "Durchmesser der Blöcke"),
     "preset": ("Ground", "Boden"),
@@ -160,6 +161,9 @@ GERMAN = {
     "Cancelled.": "Abgebrochen.",
     "What a run has traced is kept: start it again with the same inputs and \"Resume\".":
         "Was ein Lauf gerechnet hat, ist behalten: mit denselben Eingaben und «Fortsetzen» neu starten.",
+    "The results go into a temporary folder, which QGIS removes when it is closed: name a folder under \"Results\" to keep them.":
+        "Die Ergebnisse kommen in einen temporären Ordner, den QGIS beim Beenden löscht: unter «Ergebnisse» einen Ordner nennen, "
+        "um sie zu behalten.",
     "A run into a temporary folder cannot be resumed, as QGIS takes another one at the next run: name a folder under \"Results\" "
     "where you want to go on.":
         "Ein Lauf in einen temporären Ordner lässt sich nicht fortsetzen, weil QGIS beim nächsten Lauf einen anderen nimmt: unter "
@@ -317,6 +321,8 @@ GERMAN = {
     "from where; repeats the run":
         "Flächen oder Linien (so breit wie ihr Feld width, sonst wie «Breite des Objekts», sonst 0 m): wie oft jedes getroffen "
         "wird, mit welcher Energie und woher; wiederholt den Lauf",
+    "the field of --objects with the width of a line [m]; width": "Feld der Objekte mit der Breite einer Linie [m]; sonst width",
+    "the field of --objects with their names; name, id or object": "Feld der Objekte mit ihren Namen; sonst name, id oder object",
     "another weighting (TOML: [frequency], [features]); repeats the run":
         "andere Gewichtung (TOML: [frequency], [features]); wiederholt den Lauf",
     "m: the maps are for an object of this width (and the diameter of the block) at each place, else for the cell; with "
