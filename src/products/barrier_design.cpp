@@ -67,6 +67,21 @@ StretchDesign design_stretch(std::span<const LineCrossing> crossings, const Stre
   return s;
 }
 
+/// The first crossing of each block or piece on each stretch between two edges, along the line.
+std::vector<std::vector<LineCrossing>> by_stretch(std::span<const LineCrossing> crossings,
+                                                  std::span<const double> edges) {
+  const std::span<const double> inner = edges.subspan(1, edges.size() - 2);
+  std::vector<std::vector<LineCrossing>> of_stretch(edges.size() - 1);
+  std::vector<std::unordered_set<std::size_t>> seen(of_stretch.size());
+  for (const LineCrossing& crossing : crossings) {
+    const auto i = static_cast<std::size_t>(std::ranges::upper_bound(inner, crossing.along) - inner.begin());
+    if (crossing.piece == LineCrossing::kUnknown || seen[i].insert(crossing.piece).second)
+      of_stretch[i].push_back(crossing);
+  }
+  for (std::vector<LineCrossing>& here : of_stretch) here = along_the_line(here);
+  return of_stretch;
+}
+
 /// Number of blocks among crossings.
 std::size_t blocks_of(std::span<const LineCrossing> crossings) {
   std::unordered_set<std::size_t> blocks;
@@ -215,17 +230,14 @@ DesignBlock DesignBlockRule::of(std::span<const LineCrossing> crossings) const {
 
 std::vector<StretchDesign> design_stretches(std::span<const LineCrossing> crossings, std::span<const double> edges,
                                             const DesignBlockRule& block, const DesignFactors& factors) {
-  const std::vector<LineCrossing> s = along_the_line(crossings);
-  const double all = weight_of(s);
+  const std::vector<std::vector<LineCrossing>> of_stretch = by_stretch(crossings, edges);
+  double all = 0.0;
+  for (const std::vector<LineCrossing>& here : of_stretch)
+    for (const LineCrossing& crossing : here) all += crossing.weight;
   std::vector<StretchDesign> stretches;
-  auto first = s.begin();
-  for (std::size_t i = 1; i < edges.size(); ++i) {
-    const auto end =
-        i + 1 == edges.size() ? s.end() : std::ranges::lower_bound(first, s.end(), edges[i], {}, &LineCrossing::along);
-    const std::span<const LineCrossing> here(first, end);
-    stretches.push_back(design_stretch(here, {edges[i - 1], edges[i], weight_of(here) / all}, block, factors));
-    first = end;
-  }
+  for (std::size_t i = 0; i < of_stretch.size(); ++i)
+    stretches.push_back(
+        design_stretch(of_stretch[i], {edges[i], edges[i + 1], weight_of(of_stretch[i]) / all}, block, factors));
   return stretches;
 }
 

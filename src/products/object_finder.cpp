@@ -186,29 +186,29 @@ ObjectFinder::RimLimits ObjectFinder::limits_of(const Path& path, const Block& f
   return limits;
 }
 
-std::optional<Touch> ObjectFinder::touch_in(std::size_t span, const Way& way, std::uint32_t object, double radius,
+std::optional<Touch> ObjectFinder::touch_in(std::size_t span, const Way& way, const PartOfObject& part, double radius,
                                             const RimLimits& limits) const {
-  if (limits.begin.empty() && limits.end.empty()) return touch_of(way, objects_[object], radius);
+  const HazardObject& object = objects_[part.object];
+  if (limits.begin.empty() && limits.end.empty()) return touch_of_part(way, object, part.part, radius);
   const Eigen::Vector2d whole = way.to - way.from;
   std::optional<Touch> all;
-  for (std::size_t part = 0; part < parts_of(objects_[object]); ++part) {
-    const auto add = [&](double from, double to, double of_rim) {
-      if (!(from < to)) return;
-      const Way stretch{way.from + from * whole, way.from + to * whole};
-      if (const auto touch = touch_of_part(stretch, objects_[object], part, of_rim))
-        all = hull(all, Touch{from + touch->first * (to - from), from + touch->last * (to - from)});
-    };
-    const auto [from, to] = limits.of_rim({object, part}, span);
-    add(0.0, from, 0.0);
-    add(from, to, radius);
-    add(std::max(from, to), 1.0, 0.0);
-  }
+  const auto add = [&](double from, double to, double of_rim) {
+    if (!(from < to)) return;
+    const Way stretch{way.from + from * whole, way.from + to * whole};
+    if (const auto touch = touch_of_part(stretch, object, part.part, of_rim))
+      all = hull(all, Touch{from + touch->first * (to - from), from + touch->last * (to - from)});
+  };
+  const auto [from, to] = limits.of_rim(part, span);
+  add(0.0, from, 0.0);
+  add(from, to, radius);
+  add(std::max(from, to), 1.0, 0.0);
   return all;
 }
 
 void ObjectFinder::add(const Path& path, const Block& body, std::span<ObjectContact> contacts) const {
   const RimLimits limits = limits_of(path, body, path.breaks.empty() ? body : path.breaks.back().body);
   Block block = body;
+  std::vector<PartOfObject> touched;
   auto next_break = path.breaks.begin();
   for (std::size_t i = 0; i < path.spans.size(); ++i) {
     for (; next_break != path.breaks.end() && next_break->span <= i; ++next_break) block = next_break->body;
@@ -216,13 +216,17 @@ void ObjectFinder::add(const Path& path, const Block& body, std::span<ObjectCont
     const auto energy = [&](double share) {
       return static_cast<float>(0.5e-3 * block.mass * speed_squared_at(span, share));
     };
-    for (const std::uint32_t object : objects_near(span)) {
-      const std::optional<Touch> touch = touch_in(i, way_of(span), object, block.radius(), limits);
-      if (!touch) continue;
-      ObjectContact& contact = contacts[object];
-      if (contact.entry < 0.0F) contact.entry = energy(touch->first);
+    const Way way = way_of(span);
+    for_each_part(span, [&](const PartOfObject& part) {
+      const std::optional<Touch> touch = touch_in(i, way, part, block.radius(), limits);
+      if (!touch) return;
+      ObjectContact& contact = contacts[part.object];
+      if (std::ranges::find(touched, part) == touched.end()) {
+        touched.push_back(part);
+        contact.entry = std::max(contact.entry, energy(touch->first));
+      }
       contact.largest = std::max({contact.largest, energy(touch->first), energy(touch->last)});
-    }
+    });
   }
 }
 

@@ -14,7 +14,7 @@ namespace talus {
 /// Energies of a block at an object [kJ]; negative: it does not meet it.
 struct ObjectContact {
   float largest = -1.0F;  ///< on the part of its path that touches the object
-  float entry = -1.0F;    ///< where it first touches the object
+  float entry = -1.0F;    ///< where it first touches a part of the object; of several parts the largest
 
   /// Adds what another piece of the same block meets: the larger energies count.
   void raise(const ObjectContact& piece) {
@@ -66,7 +66,7 @@ class ObjectFinder {
   /// Whether a barrier stands between the place where it caught a block and the nearest place of the part.
   bool stands_behind(const PartOfObject& part, const Eigen::Vector2d& caught) const;
   RimLimits limits_of(const Path& path, const Block& first, const Block& last) const;
-  std::optional<Touch> touch_in(std::size_t span, const Way& way, std::uint32_t object, double radius,
+  std::optional<Touch> touch_in(std::size_t span, const Way& way, const PartOfObject& part, double radius,
                                 const RimLimits& limits) const;
 
   const Surface& surface_;

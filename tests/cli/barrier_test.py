@@ -111,6 +111,21 @@ class Design(Case):
         self.assertEqual(sum(row["crossings"] for row in few), 101)
         self.refused("--stretch = 0.5", arguments=["--screen", "road", "--stretch", "0.5"])
 
+    def test_a_leg_that_blocks_cross_after_another_is_not_empty(self):
+        """Each of the 101 blocks crosses 60 m farther along the line again, 10 m/s faster: a hairpin."""
+        again = [(s, i, name, v + 10.0, h, m, at + 60.0) for s, i, name, v, h, m, at in self.rows if name == "road"]
+        values, report, text = self.design("--stretch", "20")
+        self.save(again)
+        after, with_again, said = self.design("--stretch", "20")
+        self.assertEqual(values, after)  # the whole line is by first crossings
+        first, later = ([s for s in r["stretches"] if s["crossings"] > 0] for r in (report, with_again))
+        self.assertEqual(first, [{**s, "share": s["share"] * 2} for s in later[:len(first)]])
+        self.assertEqual([s["crossings"] for s in later[len(first):]], [s["crossings"] for s in first])
+        self.assertEqual([round(s["from_m"] - f["from_m"]) for s, f in zip(later[len(first):], first)], [60] * len(first))
+        self.assertGreater(later[-1]["largest_energy_kj"], 2.0 * first[-1]["largest_energy_kj"])
+        self.assertNotIn("crossed the line before", text)
+        self.assertIn("101 crossings on stretches are of blocks that crossed the line before", said)
+
     def test_the_note_names_what_is_too_low_and_never_advises_less_than_the_whole_line(self):
         """75 fast blocks with low jumps up to 25 m, 26 slow ones with high jumps beyond: only h_i of the line is too low."""
         self.rows = [(0, i, "road", 10.0, 0.1, 3000.0, 10.0 + 0.2 * i) for i in range(75)]

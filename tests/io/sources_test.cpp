@@ -40,6 +40,22 @@ TEST_F(Sources, APolygonGivesTheCellsWhoseCentresItCoversFromTheNorthWest) {
   EXPECT_TRUE(layer.reprojections.empty());
 }
 
+TEST_F(Sources, ACentreOnAnEdgeBelongsToOneOfTwoPolygons) {  // squares of 30 m whose edges are lines of centres
+  const auto square = [](double west, double south) {
+    const auto at = [](double x, double y) { return std::to_string(x) + " " + std::to_string(y); };
+    return "POLYGON((" + at(west, south) + "," + at(west + 30, south) + "," + at(west + 30, south + 30) + "," +
+           at(west, south + 30) + "," + at(west, south) + "))";
+  };
+  for (const auto& [east, north] : {std::pair{30.0, 0.0}, std::pair{0.0, 30.0}}) {
+    EXPECT_EQ(read({{square(15, 5)}}).cells.size(), 9U);
+    const SourceLayer both = read({{square(15, 5)}, {square(15 + east, 5 + north)}});
+    Cells all = cells(both);
+    std::ranges::sort(all);
+    EXPECT_EQ(std::ranges::unique(all).size(), 0U);
+    EXPECT_EQ(both.cells.size(), 18U);
+  }
+}
+
 TEST_F(Sources, HolesAndPartsAreRight) {  // 5 x 5 cells without 3 x 3 in the middle, and 2 cells apart
   const SourceLayer layer =
       read({{"MULTIPOLYGON(((0 0,50 0,50 50,0 50,0 0),(10 10,40 10,40 40,10 40,10 10)),((60 60,80 60,80 70,60 70,60 "

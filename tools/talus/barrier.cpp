@@ -156,8 +156,12 @@ std::vector<talus::LineCrossing> crossings_of(const CrossingTable& table, const 
   const talus::Screen& screen = screen_of(run, o);
   std::vector<talus::LineCrossing> crossings;
   for (std::size_t i = 0; i < table.count; ++i)
-    crossings.push_back({table.speed[i], table.height[i], table.mass[i], talus::place_along(screen, table.places[i]),
-                         1.0, table.number[i]});
+    crossings.push_back({.speed = table.speed[i],
+                         .height = table.height[i],
+                         .mass = table.mass[i],
+                         .along = talus::place_along(screen, table.places[i]),
+                         .block = table.number[i],
+                         .piece = i});
   weighting = weigh_crossings(crossings, table, {o.folder, o.frequency, o.unweighted});
   report.weighting = weighting.text;
   report.frequency = weighting.given;
@@ -165,6 +169,36 @@ std::vector<talus::LineCrossing> crossings_of(const CrossingTable& table, const 
   if (const std::string shares = talus::io::class_shares_text(weighting.given); !shares.empty())
     report.notes.push_back(shares);
   return crossings;
+}
+
+/// All crossings of what falls, with those of blocks and pieces that had crossed the line before.
+///
+/// @param first  their first crossings, weighed, also of what never falls
+std::vector<talus::LineCrossing> with_later_ones(std::vector<talus::LineCrossing> first, const CrossingTable& table,
+                                                 const talus::Screen& screen) {
+  for (const CrossingTable::Again& again : table.again) {
+    talus::LineCrossing crossing = first[again.first];
+    crossing.speed = again.speed;
+    crossing.height = again.height;
+    crossing.mass = again.mass;
+    crossing.along = talus::place_along(screen, again.place);
+    first.push_back(crossing);
+  }
+  std::erase_if(first, [](const auto& c) { return !(c.weight > 0.0); });
+  return first;
+}
+
+/// A note where much of what crosses a stretch has crossed another one before: a hairpin, several lines under one id.
+std::optional<std::string> again_note(const BarrierReport& report, std::size_t blocks) {
+  constexpr double kFew = 0.01;  // of the crossings
+  std::size_t on_stretches = 0;
+  for (const talus::io::StretchRow& row : report.stretches) on_stretches += row.values.crossings;
+  const std::size_t again = on_stretches - blocks;
+  if (static_cast<double>(again) <= kFew * static_cast<double>(blocks)) return std::nullopt;
+  return std::to_string(again) +
+         " crossings on stretches are of blocks that crossed the line before, on another stretch (a winding line, or "
+         "several under one id): values and frequencies of the whole line are those of first crossings, as if all "
+         "stopped there (unsafe where they do not); give each leg a screen of its own, or take the values by stretch";
 }
 
 /// ", but in the laws and shares of the values": where crossings of sources with a frequency of 0 count all the same.
@@ -299,20 +333,23 @@ std::optional<std::string> end_note(const talus::io::BarrierWidth& width, double
          "a longer one and run again";
 }
 
-void add_stretches(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
+/// @param all  crossings, also later ones of a block
+void add_stretches(BarrierReport& report, std::span<const talus::LineCrossing> all, std::size_t blocks,
                    const talus::DesignBlockRule& rule, const RunSummary& run, const Options& o) {
   std::vector<double> parts;
   for (const auto& line : screen_of(run, o).lines) parts.push_back(talus::length_of(line));
   if (const auto note = end_note(*report.width, std::accumulate(parts.begin(), parts.end(), 0.0)))
     report.notes.push_back(*note);
   for (const talus::StretchDesign& s :
-       talus::design_stretches(crossings, talus::stretch_edges(parts, o.stretch), rule, report.factors))
+       talus::design_stretches(all, talus::stretch_edges(parts, o.stretch), rule, report.factors))
     report.stretches.push_back({s, {}});
+  if (const auto note = again_note(report, blocks)) report.notes.push_back(*note);
   if (const auto note = talus::io::stretch_note(report)) report.notes.push_back(*note);
 }
 
-void add_design(BarrierReport& report, std::span<const talus::LineCrossing> crossings, const RunSummary& run,
-                const Options& o) {
+/// @param all  crossings, also later ones of a block
+void add_design(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
+                std::span<const talus::LineCrossing> all, const RunSummary& run, const Options& o) {
   report.factors = o.factors;
   report.factors.percentile = 0.01 * o.percentile;
   const talus::DesignBlockRule rule{o.volume, o.density.value_or(run.density), run.density};
@@ -320,7 +357,7 @@ void add_design(BarrierReport& report, std::span<const talus::LineCrossing> cros
   report.block = rule.of(crossings);
   report.design = talus::design_barrier(crossings, report.block, report.factors);
   report.longest = o.stretch;
-  if (!run.of_profile) add_stretches(report, crossings, rule, run, o);
+  if (!run.of_profile) add_stretches(report, all, crossings.size(), rule, run, o);
 }
 
 /// The width, with that of the paper's rule. @param crossings  also of blocks that never fall: the rule is of all
@@ -330,15 +367,10 @@ talus::io::BarrierWidth width_by_map(const BarrierReport& report, std::span<cons
   return {.bin = run.cell, .above = talus::stretch_above(crossings, run.cell, run.released, 1.0 - report.containment)};
 }
 
-/// Adds how often blocks cross the line and each of its stretches. The line has the sum of the stretches, to the bit.
+/// Adds how often blocks cross the line and each of its stretches.
 void add_crossings_per_year(BarrierReport& report, const Weighting& weighting) {
-  talus::CrossingSums line = weighting.line;
-  line.sum = 0.0;
-  for (talus::io::StretchRow& row : report.stretches) {
-    row.per_year = weighting.per_year(row.values.sums);
-    line.sum += row.values.sums.sum;
-  }
-  report.per_year = weighting.per_year(line);
+  for (talus::io::StretchRow& row : report.stretches) row.per_year = weighting.per_year(row.values.sums);
+  report.per_year = weighting.per_year(weighting.line);
 }
 
 int design(Options o) {
@@ -366,10 +398,11 @@ int design(Options o) {
   report.blocks = crossings.blocks;
   report.containment = 0.01 * o.containment;
   if (!run.of_profile) report.width = width_by_map(report, blocks, run);
+  const std::vector<talus::LineCrossing> all = with_later_ones(blocks, crossings, screen_of(run, o));
   keep_falling(blocks, o, report, weighting);
   if (report.width) report.width->shortest = talus::shortest_stretch(blocks, report.containment);
   report.values = o.observed.empty() ? "the simulated crossings" : "the observed crossings of " + o.observed;
-  add_design(report, blocks, run, o);
+  add_design(report, blocks, all, run, o);
   add_crossings_per_year(report, weighting);
   std::vector<double> kilojoules = values.energy;
   for (double& energy : kilojoules) energy *= 1e-3;

@@ -36,6 +36,8 @@ struct LineCrossing {
   std::size_t block = 0;             ///< number of the block: the pieces of a block have one
   std::uint64_t stratum = 0;         ///< of the block, as `AnnualShare::stratum`
   std::uint32_t stratum_blocks = 0;  ///< number of blocks in the stratum; 0: strata do not matter
+  static constexpr std::size_t kUnknown = static_cast<std::size_t>(-1);
+  std::size_t piece = kUnknown;  ///< number of the block, or piece of one, for several crossings of it
 
   double energy() const { return 0.5 * mass * speed * speed; }  ///< translational [J]
 };
@@ -143,8 +145,10 @@ struct DesignBlockRule {
   DesignBlock of(std::span<const LineCrossing> crossings) const;
 };
 
-/// A design for each stretch between two edges. A crossing on an edge belongs to the stretch that begins there; what
-/// lies beyond the last edge, by rounding, to the last stretch.
+/// A design for each stretch between two edges, by the first crossing of each block or piece on it. A crossing on an
+/// edge belongs to the stretch that begins there; what lies beyond the last edge, by rounding, to the last stretch.
+///
+/// @param crossings  in the order of time; also those of blocks that have crossed another stretch before
 ///
 /// A stretch has a design if its `effective_number` of crossings is enough for the percentile.
 std::vector<StretchDesign> design_stretches(std::span<const LineCrossing> crossings, std::span<const double> edges,

@@ -1,8 +1,8 @@
 #include "talus/io/gdal/crossings_file.hpp"
 
 #include <filesystem>
+#include <limits>
 #include <unordered_map>
-#include <unordered_set>
 
 #include "csv_table.hpp"
 #include "talus/base/error.hpp"
@@ -54,7 +54,7 @@ CrossingTable read_crossings(const std::string& path, const std::string& screen)
                        {"screen"});
   CrossingTable out;
   BlockNumbers blocks;
-  std::unordered_set<std::string> seen;
+  std::unordered_map<std::string, std::size_t> seen;  // the first crossing of each block or piece
   for (const CsvTable::Row& row : table.rows()) {
     const std::string& of = table.text(row, "screen");
     if (of.empty()) table.refuse(row, "screen", "must be given: a crossing of no screen would count nowhere");
@@ -63,15 +63,26 @@ CrossingTable read_crossings(const std::string& path, const std::string& screen)
       continue;
     }
     ++out.rows;
+    const auto speed = table.number(row, "speed_ms", kSpeed), energy = table.number(row, "energy_kj", kEnergy),
+               height = table.number(row, "jump_height_m", kHeight), mass = table.number(row, "mass_kg", kMass),
+               x = table.number(row, "x", kPlace), y = table.number(row, "y", kPlace);
     const std::string block = block_of(table, row);
-    if (!block.empty() && !seen.insert(block + ',' + piece_of(table, row)).second) continue;
+    if (!block.empty()) {
+      const auto [first, fresh] = seen.try_emplace(block + ',' + piece_of(table, row), out.count);
+      if (!fresh) {
+        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+        out.again.push_back({first->second,
+                             speed.value_or(kNone),
+                             height.value_or(kNone),
+                             mass.value_or(kNone),
+                             {x.value_or(kNone), y.value_or(kNone)}});
+        continue;
+      }
+    }
     ++out.count;
     out.source.push_back(table.text(row, "source"));
     out.block.push_back(table.text(row, "block"));
     out.number.push_back(blocks.of(block));
-    const auto speed = table.number(row, "speed_ms", kSpeed), energy = table.number(row, "energy_kj", kEnergy),
-               height = table.number(row, "jump_height_m", kHeight), mass = table.number(row, "mass_kg", kMass),
-               x = table.number(row, "x", kPlace), y = table.number(row, "y", kPlace);
     if (speed) out.speed.push_back(*speed);
     if (height) out.height.push_back(*height);
     if (mass) out.mass.push_back(*mass);

@@ -351,7 +351,10 @@ CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, bool touched) {
   if (mask.columns <= 0 || mask.rows <= 0) return {};
   mask.marks.resize(static_cast<std::size_t>(mask.columns) * static_cast<std::size_t>(mask.rows));
   const Dataset window = memory_dataset(mask.columns, mask.rows, mask.marks.data());
-  std::array<double, 6> place{west * grid.cell_x, grid.cell_x, 0.0, north * grid.cell_y, 0.0, -grid.cell_y};
+  // GDAL counts cells whose centres lie on an edge to the west or east once, to the south and north twice: a little to
+  // the north none lies on one.
+  const double off_edges = touched ? 0.0 : 1e-6 * grid.cell_y;
+  std::array<double, 6> place{west * grid.cell_x, grid.cell_x, 0.0, north * grid.cell_y + off_edges, 0.0, -grid.cell_y};
   window->SetGeoTransform(place.data());
   GdalMessages messages;
   int band = 1;

@@ -334,6 +334,29 @@ TEST(DesignStretches, EachByItsOwnCrossings) {
   EXPECT_NEAR(share, 1.0, 1e-15);
 }
 
+/// A hairpin: 40 blocks cross the first leg, then, faster, the second one; half of them roll back over the first.
+TEST(DesignStretches, ABlockCountsOnEachThatItCrossesOnce) {
+  std::vector<LineCrossing> crossings;
+  const auto cross = [&](std::size_t block, double speed, double along) {
+    crossings.push_back(
+        {.speed = speed, .height = 1.0, .mass = 1000.0, .along = along, .block = block, .piece = block});
+  };
+  for (std::size_t i = 0; i < 40; ++i) {
+    cross(i, 5.0, 10.0);
+    cross(i, 15.0, 50.0);
+    if (i % 2 == 0) cross(i, 30.0, 5.0);
+  }
+  const std::vector<double> edges{0.0, 30.0, 60.0, 90.0};
+  const auto found = design_stretches(crossings, edges, {}, {});
+  EXPECT_EQ(found[0].crossings, 40U);
+  EXPECT_EQ(found[1].crossings, 40U);
+  EXPECT_EQ(found[2].crossings, 0U);
+  EXPECT_EQ(found[0].design->speed_percentile, 5.0);
+  EXPECT_EQ(found[1].design->speed_percentile, 15.0);
+  EXPECT_EQ(found[1].stretch.share, 0.5);
+  EXPECT_EQ(found[1].sums.sum, 40.0);
+}
+
 /// Sources of small blocks that fall a hundred times as often: the weights, not the numbers, say what 95 % is.
 TEST(DesignStretches, RareBlocksCountAsRare) {
   std::vector<LineCrossing> crossings;

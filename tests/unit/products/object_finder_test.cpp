@@ -103,6 +103,17 @@ TEST(ObjectFinder, EntryIsTheFirstTouchOfThePath) {  // inside a large object fr
   EXPECT_NEAR(contact.largest, 0.425, 1e-7);
 }
 
+TEST(ObjectFinder, EntryOfSeveralPartsIsThatOfThePartThatIsHitHardest) {  // the farther house, into which it falls
+  const HazardObject near = wall(9.0, 10.0), far = wall(14.0, 14.5);
+  HazardObject both = near;
+  both.polygons.push_back(far.polygons.front());
+  EXPECT_NEAR(contact_with(near, flight()).entry, 0.10225, 1e-7);  // from x = 8.5: 1.5 m/s
+  EXPECT_NEAR(contact_with(far, flight()).entry, 0.11225, 1e-7);   // from x = 13.5: -3.5 m/s
+  EXPECT_EQ(contact_with(both, flight()).entry, contact_with(far, flight()).entry);
+  std::swap(both.polygons.front(), both.polygons.back());
+  EXPECT_EQ(contact_with(both, flight()).entry, contact_with(far, flight()).entry);
+}
+
 /// From x = 5 to x = 15: a rim of 0.5 m touches what begins at 5.3 m before the block moves, and reaches it by its
 /// centre at a share of 0.03 of the way, where v^2 is 100 + 4.7^2.
 TEST(ObjectFinder, WhatABlockLiesBesideAtItsReleaseIsMetByItsCentreOnly) {
