@@ -211,10 +211,12 @@ void RunSession::with_hint(const std::function<void()>& work) {
 
 /// The leader writes the results; the others wait until it tells them how that ended.
 Outcome RunSession::deliver() {
-  if (request_.part)
+  if (request_.part) {
     tracing_->save_checkpoint();
-  else
+  } else {
+    tracing_->save_before_writing();
     collect(tracing_->tally(), processes_);
+  }
   constexpr int kInterrupted = -1;
   int ended = 0;
   Interrupted interruption("interrupted");

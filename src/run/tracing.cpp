@@ -102,6 +102,12 @@ void Tracing::save_checkpoint() {
   all_saved_ = true;
 }
 
+void Tracing::save_before_writing() {
+  constexpr double kMuch = 30.0;  // s; less than that is traced again sooner than it is saved
+  const bool needed = processes_.size() > 1 || seconds_since_checkpoint() > kMuch;
+  if (!checkpoint().empty() && !all_saved_ && needed) save_checkpoint();
+}
+
 void Tracing::interrupt() {
   if (simulation_.position().unit == 0 && simulation_.position().round == 0) stop_interrupted();
   if (!all_saved_) save_checkpoint();

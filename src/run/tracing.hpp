@@ -40,6 +40,9 @@ class Tracing {
   /// Sum of the totals of all processes. Only the leader gets it.
   Totals totals();
   void save_checkpoint();
+  /// Saves what was traced since the last checkpoint if that is much, or if a process group has traced it, which cannot
+  /// save it while the leader writes. Does nothing if none was saved yet.
+  void save_before_writing();
   /// Throws `Interrupted` while the leader writes the results. A single process saves its work first; a process group
   /// resumes from the last checkpoint.
   [[noreturn]] void interrupt_writing();

@@ -526,6 +526,24 @@ class AllReleased(Plane):
         for key, name in (("value", "frequency"), ("low", "frequency_lower"), ("high", "frequency_upper")):
             self.assertAlmostEqual(per_year[key] / float(hit[name]), 1.0, 4)
 
+    def test_the_lower_of_two_lines_under_one_id_is_as_alone(self):
+        """By stretch, with sources of different frequency. Every block crosses both lines."""
+        write_features(self.path("lines.gpkg"), "lines",
+                       [(f"MULTILINESTRING ({line(160.0, 1.0, 199.0)[11:]},{line(100.0, 1.0, 199.0)[11:]})", ["low"]),
+                        (line(100.0, 1.0, 199.0), ["alone"])], [("id", ogr.OFTString)])
+        self.run_plane({"A": 0.0, "B": 1.0, "C": 0.3}, 150, "[blocks]\ndiameter = 1.0\n")
+        both, text = self.design()
+        self.run_well("barrier", self.path("out"), "--screen", "alone")
+        alone = self.read_json("out/barrier_alone.json")
+        self.assertEqual(len(both["stretches"]), 2 * len(alone["stretches"]))
+        for low, one in zip(both["stretches"][len(alone["stretches"]):], alone["stretches"]):
+            for key in ("crossings", "effective_crossings", "largest_energy_kj", "largest_jump_height_m", "design"):
+                self.assertEqual(low[key], one[key], key)
+            self.assertEqual(low["crossings_per_year"], one["crossings_per_year"])
+        self.assertGreater(sum(s["crossings_per_year"]["value"] for s in alone["stretches"]), 1.29)
+        self.assertAlmostEqual(both["crossings_per_year"]["value"], 1.3, 9)  # blocks, not crossings
+        self.assertIn("300 crossings on stretches are of blocks that crossed the line before", text)
+
     def test_the_width_by_the_map_is_of_all_released_blocks(self):
         """Bins of 2 m that more than 1 % of the released blocks cross, counted by hand. Those of B and C, at the sides, never fall
         but count."""

@@ -110,16 +110,26 @@ class Layers(Case):
 
     def test_an_object_without_geometry_is_left_out(self):
         self.run_well("run", *self.flags, "--sources", self.path("site.gpkg|layername=cliffs"), "--frequency", "1", "-o", self.path("out"))
-        write_features(self.path("houses.gpkg"), "houses", [(box(140, 150, 10, 8), ["A"]), (box(160, 150, 10, 8), ["B"])],
-                       [("name", ogr.OFTString)])
+        houses = [(box(0, 5000, 9, 9), ["lost"]), (box(140, 150, 10, 8), ["A"]), (box(0, 5000, 9, 9), ["far"]), (box(160, 150, 10, 8), ["B"]),
+                  (box(0, 5000, 9, 9), ["lost"])]
+        write_features(self.path("houses.gpkg"), "houses", houses, [("name", ogr.OFTString)])
         file = ogr.Open(self.path("houses.gpkg"), 1)
         layer = file.GetLayer()
-        layer.CreateFeature(ogr.Feature(layer.GetLayerDefn()))
-        layer = None
+        for number in (1, 5):
+            feature = layer.GetFeature(number)
+            feature.SetGeometry(None)
+            layer.SetFeature(feature)
+        feature = layer = None
         file = None
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
-        self.assertIn("objects without geometry, which have no results: features 3", done.stderr)
-        self.assertEqual([row["object"] for row in self.rows("out/objects.csv")], ["A", "B"])
+        self.assertIn("objects without geometry, which have no results: features 1, 5", done.stderr)
+        self.assertIn("objects wholly off the DEM, which have no results: far", done.stderr)
+        rows = {row["object"]: row["frequency"] for row in self.rows("out/objects.csv")}
+        self.assertEqual(list(rows), ["A", "far", "B"])
+        self.assertEqual(rows["far"], "")
+        write_features(self.path("two.gpkg"), "houses", [houses[1], houses[3]], [("name", ogr.OFTString)])
+        self.run_well("hazard", self.path("out"), "--overwrite", "--objects", self.path("two.gpkg"))
+        self.assertEqual({row["object"]: row["frequency"] for row in self.rows("out/objects.csv")}, {key: rows[key] for key in "AB"})
         done = self.run_well("hazard", self.path("out"), "--overwrite")
         self.assertRegex(done.stderr, "warning: removed, as not asked for this time: .*objects.csv")
 

@@ -1,5 +1,7 @@
 #include "talus/io/gdal/rasters.hpp"
 
+#include <gdal_utils.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -231,6 +233,31 @@ TEST_F(Terrains, ThreadsDoNotChangeTheHeights) {
   for (const auto& [column, row] : {std::pair{0, 0}, {2099, 0}, {1050, 1234}, {2099, 2099}})
     EXPECT_FLOAT_EQ(four.heights.at(column, row), static_cast<float>(500.0 + 0.25 * (2099 - row) + 0.125 * column));
   EXPECT_TRUE(std::ranges::equal(one.heights.values, four.heights.values));
+}
+
+TEST_F(Terrains, AMosaicOfTilesIsReadByThreadsToo) {  // a VRT of two, with a strip of 50 cells between them
+  const auto tile = [this](const std::string& name, int columns, double west) {
+    RasterFile file{.columns = columns, .rows = 2100, .place = {west, 10.0, 0.0, 5200080.0, 0.0, -10.0}};
+    for (int row = 0; row < file.rows; ++row)
+      for (int column = 0; column < columns; ++column)
+        file.values.push_back(500.0 + 0.25 * row + 0.0125 * (west - 600000.0) + 0.125 * column);
+    file.nodata = -9999.0;
+    return file.write(path(name));
+  };
+  const std::string west = tile("west.tif", 1050, 600000.0), east = tile("east.tif", 1000, 611000.0);
+  const char* const tiles[] = {west.c_str(), east.c_str(), nullptr};
+  const std::string mosaic = path("mosaic.vrt");
+  GDALClose(GDALBuildVRT(mosaic.c_str(), 2, nullptr, tiles, nullptr, nullptr));
+  const Terrain one = read_terrain(mosaic), four = read_terrain(mosaic, {}, 4);
+  ASSERT_EQ(four.heights.grid.columns, 2100);
+  for (int row = 0; row < 2100; ++row)
+    for (int column = 0; column < 2100; ++column) {
+      const auto expected = static_cast<float>(500.0 + 0.25 * (2099 - row) + 0.125 * column);
+      const float is = four.heights.at(column, row), alone = one.heights.at(column, row);
+      const bool gap = column >= 1050 && column < 1100;
+      ASSERT_TRUE(gap ? std::isnan(is) && std::isnan(alone) : is == expected && alone == expected)
+          << column << ", " << row << ": " << is;
+    }
 }
 
 TEST_F(Terrains, ThreadsDoNotChangeTheFaultThatIsNamed) {

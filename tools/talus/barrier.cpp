@@ -120,6 +120,11 @@ CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
       throw talus::InputError(file.string() +
                               ": has rows without speed, jump height, mass or place, must be as talus run "
                               "has written it; run the scenario again");
+  for (const CrossingTable::Again& a : crossings.again)
+    if (std::isnan(a.speed + a.height + a.mass + a.place.x() + a.place.y()))
+      throw talus::InputError(file.string() +
+                              ": has rows of further crossings without speed, jump height, mass or place, must be as "
+                              "talus run has written it; run the scenario again");
   return crossings;
 }
 
@@ -197,7 +202,8 @@ std::optional<std::string> again_note(const BarrierReport& report, std::size_t b
   if (static_cast<double>(again) <= kFew * static_cast<double>(blocks)) return std::nullopt;
   return std::to_string(again) +
          " crossings on stretches are of blocks that crossed the line before, on another stretch (a winding line, or "
-         "several under one id): values and frequencies of the whole line are those of first crossings, as if all "
+         "several under one id): values, width and frequencies of the whole line are those of first crossings, as if "
+         "all "
          "stopped there (unsafe where they do not); give each leg a screen of its own, or take the values by stretch";
 }
 

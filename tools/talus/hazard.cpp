@@ -43,9 +43,8 @@ fs::path tally_file(const fs::path& folder) {
   if (const auto file = talus::io::hazard_file_of(folder)) return *file;
   throw talus::InputError(
       folder.string() +
-      ": this run has no annual frequencies; give the sources a field frequency (events per year), or the run one for "
-      "all its sources together ([frequency] total in its scenario, or a flag of talus run; per_area, power_law), and "
-      "run again");
+      ": this run has no annual frequencies; give the sources a field frequency (events per year), or the scenario of "
+      "the run [frequency] total (of all sources together), per_area or power_law, and run again");
 }
 
 /// What an object of some width needs: class limits that are thresholds of the run.

@@ -26,7 +26,7 @@ struct DesignBlock {
   double density = 2700.0;  ///< rho [kg/m^3]
 };
 
-/// A block, or a piece of one, where it first crosses a line.
+/// A block, or a piece of one, where it crosses a line.
 struct LineCrossing {
   double speed = 0.0;                ///< [m/s]
   double height = 0.0;               ///< vertical, ground to centre [m]
@@ -125,7 +125,7 @@ struct DesignExceeded {
 
 /// Design of the barrier along one stretch of a line, by the crossings of this stretch alone.
 struct StretchDesign {
-  Stretch stretch;            ///< with its share of the crossings of the whole line, by weight
+  Stretch stretch;            ///< with its share of the crossings of all stretches, by weight
   std::size_t crossings = 0;  ///< blocks and pieces
   CrossingSums sums;
   double effective = 0.0;                ///< `effective_number`

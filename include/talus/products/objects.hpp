@@ -20,7 +20,7 @@ struct HazardObject {
 /// The trajectories that hit one object. Whole numbers only: equal bits for any number of threads.
 struct ObjectHits {
   HazardCell largest;                                ///< by the largest energy while the block touches the object
-  HazardCell entry;                                  ///< by the energy where it first touches it; of several parts the largest
+  HazardCell entry;                                  ///< by the largest of the energies where it first touches a part
   std::map<std::uint32_t, std::int64_t> by_feature;  ///< weight from each feature [WeightScale::unit]
   std::uint64_t trajectories = 0;
 

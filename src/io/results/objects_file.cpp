@@ -189,11 +189,12 @@ void ObjectLayer::State::warn_of_names(const std::string& path) {
   for (const std::string& name : names)
     if (!seen.insert(name).second) twice.insert(name);
   if (!twice.empty())
-    warnings.push_back(path +
-                       ": several objects have the same name (field name, else id, else the number of the "
-                       "feature), so that their rows in objects_curves.csv and objects_sources.csv cannot be told "
-                       "apart: " +
-                       listed(std::vector<std::string>(twice.begin(), twice.end())));
+    warnings.push_back(
+        path +
+        ": several objects have the same name (of --name-field, else name, id, object or the number "
+        "of the feature), so that their rows in objects_curves.csv and objects_sources.csv cannot be told "
+        "apart: " +
+        listed(std::vector<std::string>(twice.begin(), twice.end())));
 }
 
 /// A road of no width is hit less often than it is.

@@ -329,8 +329,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         """What is wrong with a name that no algorithm of Talus has, as in a call of qgis_process: QGIS would pass over it. Those
         of others are passed over: a script may give one set of inputs to check and to run."""
         names = [definition.name() for definition in self.parameterDefinitions()]
-        of_all = {definition.name() for algorithm in self.provider().algorithms()
-                  for definition in algorithm.parameterDefinitions()}
+        of_all = set(names)  # those of the provider may be of the time before the program was there
+        of_all |= {definition.name() for algorithm in self.provider().algorithms() for definition in algorithm.parameterDefinitions()}
         for name in parameters:
             if name not in of_all:
                 near = difflib.get_close_matches(str(name).upper(), names, 1)
