@@ -45,10 +45,12 @@ TEST(SkillSentence, IsNotOfAModelThatHardlySimulates) {
   ScoredRows rows;
   rows.rows = "fit";
   rows.score = of_two_groups(0.5, 0.5);
-  rows.score.groups[0].unseen = 12;  // one of the two groups: a half is still told
+  rows.score.groups[0].unseen = 6;  // half of a group is still told
   rows.climatology = of_two_groups(0.8, 0.8);
   rows.skill.share = 0.3;
   EXPECT_NE(skill_sentence(rows).find("skill 30.0 %"), std::string::npos);
+  rows.score.groups[0].unseen = 12;  // nothing of one quantity: the other one may not hide that
+  EXPECT_NE(skill_sentence(rows).find("skill cannot be told: 50 % of the score"), std::string::npos);
   rows.score.groups[1].unseen = 1;
   EXPECT_EQ(skill_sentence(rows),
             "fitting rows: skill cannot be told: 75 % of the score is of rows that have too few simulated values and "

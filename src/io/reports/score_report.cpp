@@ -138,7 +138,9 @@ std::vector<std::string> measured_but_not_scored(const Campaign& campaign, const
 }  // namespace
 
 bool hardly_simulated(const Score& score) {
-  return unseen_share(score) > 0.5;
+  // A group without simulated values scores better than its climatology, which leaves out the block's own value.
+  const auto unseen = [](const GroupScore& group) { return 2 * group.unseen > group.rows; };
+  return unseen_share(score) > 0.5 || std::ranges::any_of(score.groups, unseen);
 }
 
 std::string rows_in_words(const std::string& rows) {
@@ -204,7 +206,7 @@ std::string skill_sentence(const ScoredRows& s) {
   if (!(s.skill.share > 0.0) && s.deposits) return rows + "no skill: " + errors;
   if (!(s.skill.share > 0.0))
     return rows + "no skill: " + errors + ": the measurements of the " + (s.rows == "fit" ? "other " : "") +
-           "fitting blocks, without any model, are " + (s.skill.interval.high < 0.0 ? "nearer" : "as near");
+           "fitting blocks, without any model, are " + (s.skill.interval.high < 0.0 ? "nearer" : "as near or nearer");
   return rows + "skill " + with_decimals(100.0 * s.skill.share, 1) + " %" + interval + ": " + errors +
          (s.skill.interval.low > 0.0 ? "" : "; it may have no skill");
 }

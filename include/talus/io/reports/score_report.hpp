@@ -41,8 +41,8 @@ struct BeforeAfter {
   UsedClusters clusters;  ///< that the intervals rest on
 };
 
-/// Whether more than half of a score is of rows that score as the climatology, as the model seldom simulates what was
-/// measured: it says little of the model.
+/// Whether more than half of a score, or of the rows of one group, is of rows that score as the climatology, as the
+/// model seldom simulates what was measured: it says little of the model.
 bool hardly_simulated(const Score& score);
 
 /// "fitting", "held-out" or "out-of-fold", for "fit", "holdout" and "out-of-fold".
