@@ -5,13 +5,14 @@ import os
 import re
 import signal
 import subprocess
+import time
 import unittest
 
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import (NORTH, TALUS, WEST, Case, bands_of, box, heights, log_left_by_a_viewer, rows_of, sqlite_rows,
-                     write_dem, write_features)
+from support import (NORTH, TALUS, WEST, Case, KeptRuns, bands_of, box, heights, log_left_by_a_viewer, rows_of,
+                     sqlite_rows, write_dem, write_features)
 
 RUN = """dem = "dem.tif"
 trajectories = 200
@@ -20,9 +21,10 @@ file = "sources.gpkg"
 [blocks]
 diameter = 0.8
 """
+FEW = RUN.replace("200", "50")  # where no figure hangs on the number: what is equal, a bound, or a text
 
 
-class Hazard(Case):
+class Hazard(KeptRuns, Case):
     def setUp(self):
         super().setUp()
         write_features(self.path("sources.gpkg"), "sources",
@@ -31,7 +33,13 @@ class Hazard(Case):
         self.write("s.toml", RUN)
 
     def simulate(self, out="out", *more):
-        self.run_well("run", self.path("s.toml"), "-o", self.path(out), "-q", *more)
+        """By one thread, which costs least: that threads change no byte is a test of its own."""
+        threads = () if "--threads" in more else ("--threads", "1")
+        self.run_well("run", self.path("s.toml"), "-o", self.path(out), "-q", *more, *threads)
+
+    def simulated(self, out="out"):
+        """As `simulate`, of what several tests begin with: most with the scenario as setUp leaves it."""
+        self.keep_scenario(out, "--threads", "1")
 
     def hashes(self, out):
         hashes = {}
@@ -48,7 +56,7 @@ class Hazard(Case):
         self.assertIn(words, done.stderr)
 
     def test_maps_and_record(self):
-        self.simulate()
+        self.simulated()
         done = self.run_well("hazard", self.path("out"))
         self.assertIn("0.52 events per year", done.stderr)
         self.assertEqual(done.stderr.count("talus: warning: block sizes: "), 1)  # 0.8 m, the ground of 1 to 1.4 m
@@ -83,7 +91,7 @@ class Hazard(Case):
         self.assertEqual(self.hashes("one"), self.hashes("two"))
 
     def test_frequencies_change_no_other_file(self):
-        self.simulate()
+        self.simulated()
         with_them = self.hashes("out")
         file = ogr.Open(self.path("sources.gpkg"), 1)
         file.ExecuteSQL("UPDATE sources SET frequency = NULL")
@@ -93,7 +101,7 @@ class Hazard(Case):
         self.refused("has no annual frequencies; give the sources a field frequency", "hazard", self.path("plain"))
 
     def test_refusals(self):
-        self.simulate()
+        self.simulated()
         self.refused("is no folder of results", "hazard", self.folder)
         self.run_well("hazard", self.path("out"), "-q")
         self.refused("give --overwrite", "hazard", self.path("out"))
@@ -183,7 +191,7 @@ class Hazard(Case):
 
     def test_another_weighting(self):
         """The maps are those of a run whose sources had these frequencies from the start."""
-        self.simulate()
+        self.simulated()
         new = self.write("new.toml", "[features]\neast = 3.0\n")
         done = self.run_well("hazard", self.path("out"), "--frequency", new)
         self.assertIn("repeats the run with another weighting: 3 200 trajectories", done.stderr)
@@ -201,7 +209,7 @@ class Hazard(Case):
 
     def test_the_record_says_what_another_weighting_was(self):
         """Also when its file is gone."""
-        self.simulate()
+        self.simulated()
 
         def record(text, *more):
             new = self.write("new.toml", text)
@@ -232,9 +240,9 @@ class Hazard(Case):
         write_features(self.path(out + ".gpkg"), "sources", [(box(100, 230, 20, 10), ["west"]), (box(200, 230, 20, 10), ["east"])],
                        [("name", ogr.OFTString)])
         write_features(self.path(out + "_houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A"])], [("name", ogr.OFTString)])
-        self.write("s.toml", RUN.replace("sources.gpkg", out + ".gpkg").replace(
+        self.write("s.toml", FEW.replace("sources.gpkg", out + ".gpkg").replace(
             "0.8", "[{ diameter = 0.6, frequency = 0.9 }, { diameter = 1.4, frequency = 0.1 }]") + "".join(more))
-        self.simulate(out)
+        self.simulated(out)
 
     def hazard_by(self, out, weighting=None):
         """What is printed, the map of frequencies, and those of the house."""
@@ -320,7 +328,7 @@ class Hazard(Case):
         said = "wet-ground acts on the day of this run, 3: the figures here are those of a wet day"
         write_features(self.path("lines.gpkg"), "lines", [("LINESTRING (2600020 1200150, 2600280 1200150)", ["road"])], [("id", ogr.OFTString)])
         for day, strength, wet in ((3, 0.5, True), (4, 0.5, False), (3, 0, False)):
-            self.write("s.toml", f"day = {day}\n{RUN}[screens]\nfile = 'lines.gpkg'\n"
+            self.write("s.toml", f"day = {day}\n{FEW}[screens]\nfile = 'lines.gpkg'\n"
                        f"[effects.wet-ground]\nsoftening = {strength}\ndays = [1, 3]\n")
             self.simulate(f"out{day}{strength}")
             out = self.path(f"out{day}{strength}")
@@ -335,7 +343,7 @@ class Hazard(Case):
         write_features(self.path("houses.gpkg"), "houses", [(box(90, 150, 130, 8), ["A"])], [("name", ogr.OFTString)])
         for out, more, broken in (("whole", "", False), ("pieces", "[effects.fragmentation]\nthreshold = 20\n", True),
                                   ("strong", "[effects.fragmentation]\nthreshold = 1e6\n", False)):
-            self.write("s.toml", RUN + more)
+            self.write("s.toml", FEW + more)
             self.simulate(out)
             self.assertEqual(self.record(out).get("pieces", 0) > 0, broken)
             done = self.run_well("hazard", self.path(out), "--objects", self.path("houses.gpkg"), "--width", "60")
@@ -374,7 +382,7 @@ class Hazard(Case):
         self.assertAlmostEqual(self.read_json("out/hazard.json")["events_per_year"], 3.2, 9)
 
     def test_what_is_not_its_own_stays(self):
-        self.simulate()
+        self.simulated()
         write_features(self.path("out/objects.gpkg"), "mine", [(box(105, 150, 10, 8), ["A"]), (box(5000, 0, 9, 9), ["far"])],
                        [("name", ogr.OFTString)])
         done = self.call("hazard", self.path("out"), "--objects", self.path("out/objects.gpkg"))
@@ -389,7 +397,7 @@ class Hazard(Case):
 
     def test_what_a_reader_leaves_beside_a_raster_goes_with_it(self):
         """QGIS writes statistics beside a raster when it closes it, also when the raster has been removed before."""
-        self.simulate()
+        self.simulated()
         self.run_well("hazard", self.path("out"))
         ours = self.path("out/intensity_T100.tif.aux.xml")
         names = self.read_text(ours)
@@ -404,7 +412,7 @@ class Hazard(Case):
         self.assertFalse(os.path.exists(self.path("out/return_period_30.tif.aux.xml")))  # those of the earlier map
 
     def test_the_log_of_earlier_objects_goes_with_them(self):  # the earlier objects were read, or a damaged file
-        self.simulate()
+        self.simulated()
         for name, x in (("first", 100), ("second", 200)):
             write_features(self.path(name + ".gpkg"), name, [(box(x, 150, 10, 8), [name])], [("name", ogr.OFTString)])
         self.run_well("hazard", self.path("out"), "--objects", self.path("first.gpkg"))
@@ -421,7 +429,7 @@ class Hazard(Case):
 
     def test_a_replacement_that_was_killed(self):
         """What is left then (tests/io/hazard_file_test.cpp has how): a record of all files, some of them not there yet."""
-        self.simulate()
+        self.simulated()
         self.run_well("hazard", self.path("out"), "--width", "10")
         names = self.read_json("out/hazard.json")["files"]
         self.write("out/hazard.json", json.dumps({"program": "talus", "status": "incomplete", "files": [*names, "return_period_30.tif"]}))
@@ -436,14 +444,14 @@ class Hazard(Case):
         self.addCleanup(process.kill)
         hidden = f".hazard.talus-{process.pid}"
         while process.poll() is None and not os.path.exists(self.path(f"out/{hidden}/.lock")):
-            pass
+            time.sleep(0.001)
         return process, hidden
 
     def hidden(self):
         return [name for name in os.listdir(self.path("out")) if name.startswith(".")]
 
     def test_two_at_once(self):
-        self.simulate()
+        self.simulated()
         write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), [])])
         self.run_well("hazard", self.path("out"), "-q")
         first, hidden = self.started("--objects", self.path("houses.gpkg"))
@@ -458,7 +466,7 @@ class Hazard(Case):
         self.assertEqual(sorted(os.listdir(self.path("out"))), sorted({*named, *of_run, "hazard.json", "run.json"}))
 
     def test_what_was_killed_is_removed_by_the_next(self):
-        self.simulate()
+        self.simulated()
         os.mkdir(self.path("out/.hazard.talus-mine"))  # without the lock file of a program
         first, hidden = self.started()
         first.kill()
@@ -468,7 +476,7 @@ class Hazard(Case):
         self.assertEqual(self.hidden(), [".hazard.talus-mine"])
 
     def test_a_run_that_is_not_to_be_used_is_said(self):
-        self.simulate()
+        self.simulated()
         record = self.record()
         self.write("out/run.json", json.dumps({**record, "status": "too many trajectories ended at a limit"}))
         done = self.run_well("hazard", self.path("out"))
@@ -484,8 +492,8 @@ class Hazard(Case):
         self.assertIn("0.52 events per year", done.stdout)
 
     def test_faults_of_objects_are_found_before_the_maps(self):
+        self.simulated()
         write_features(self.path("doors.gpkg"), "doors", [("POINT (2600110 1200155)", ["A"])], [("name", ogr.OFTString)])
-        self.simulate()
         done = self.call("hazard", self.path("out"), "--objects", self.path("doors.gpkg"), "--progress=json")
         self.assertEqual(done.returncode, 2)
         self.assertIn("feature 1: is a point, must be a polygon or a line that blocks may hit; make areas of points first, as wide "
@@ -494,11 +502,11 @@ class Hazard(Case):
 
     def test_objects(self):
         """A house below each cliff, one out of reach; a road in another system that all blocks must cross."""
+        self.simulated()
         write_features(self.path("houses.gpkg"), "houses",
                        [(box(105, 150, 10, 8), ["A", 3]), (box(205, 150, 10, 8), ["B", 4]),
                         (box(5, 5, 8, 8), ["C", 1])],
                        [("name", ogr.OFTString), ("people", ogr.OFTInteger)])
-        self.simulate()
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
         self.assertIn("repeats the run for the objects: 3 200 trajectories of the recorded plan", done.stderr)
         self.assertIn("energies of objects are the largest within the outline", done.stderr)
@@ -564,10 +572,10 @@ class Hazard(Case):
         self.assertTrue(said["C"].startswith("hit by no block of this run; at most "), said["C"])
 
     def test_fields_of_objects_that_are_named_as_results_are_said(self):  # they were dropped in silence
+        self.simulated()
         write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A", 7.5, "mine", 3, "x"])],
                        [("name", ogr.OFTString), ("Frequency", ogr.OFTReal), ("sources", ogr.OFTString),
                         ("people", ogr.OFTInteger), ("object", ogr.OFTString)])
-        self.simulate()
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
         words = ("houses.gpkg: fields named as columns of the results are not copied into objects.gpkg and objects.csv: "
                  "Frequency, sources, object; rename them to keep them")
@@ -627,19 +635,19 @@ class Hazard(Case):
                    arguments=["hazard", self.path("out"), "--objects", self.path("gap.gpkg"), "--overwrite", "-q"])
 
     def test_objects_of_one_name(self):
-        self.simulate()
+        self.simulated()
         shapes = [(box(105, 150, 10, 8), ["house"]), (box(205, 150, 10, 8), ["house"]), (box(5, 5, 8, 8), [None]),
                   (box(205, 120, 10, 8), ["3"]), (box(105, 120, 10, 8), ["barn"])]
         write_features(self.path("o.gpkg"), "o", shapes, [("name", ogr.OFTString)])
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("o.gpkg"))
-        self.assertIn("several objects have the same name (field name, else id, else the number of the feature), so that their rows in "
+        self.assertIn("several objects have the same name (of --name-field, else name, id, object or the number of the feature), so that their rows in "
                       "objects_curves.csv and objects_sources.csv cannot be told apart: 3, house\n", done.stderr)
         write_features(self.path("p.gpkg"), "o", shapes[1:3], [("name", ogr.OFTString)])
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("p.gpkg"), "--overwrite")
         self.assertNotIn("the same name", done.stderr)
 
     def test_objects_without_a_name_are_called_by_their_id(self):  # by their number, which may be the id of another
-        self.simulate()
+        self.simulated()
         shapes = [(box(105, 150, 10, 8), [None, "2"]), (box(205, 150, 10, 8), ["house", "1"]), (box(5, 5, 8, 8), [" ", None])]
         write_features(self.path("o.gpkg"), "o", shapes, [("name", ogr.OFTString), ("id", ogr.OFTString)])
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("o.gpkg"))
@@ -652,7 +660,7 @@ class Hazard(Case):
 
     def test_objects_of_a_table(self):
         """Names stay as they stand (0123 was 123, a date changed its look), numbers are numbers in the GeoPackage."""
-        self.simulate()
+        self.simulated()
         shapes = [(box(105, 150, 10, 8), "0123,2020-01-01,5,1.50,"), (box(205, 150, 10, 8), "12345678901234567891,,,2,"),
                   (box(5, 5, 8, 8), "7,x,-3,,")]
         self.write("o.csv", "wkt,name,built,people,value,width\n" + "".join(f'"{wkt}",{cells}\n' for wkt, cells in shapes))
@@ -671,7 +679,7 @@ class Hazard(Case):
 
     def test_ids_of_a_table_stay_as_they_stand(self):
         """They became 1.1, 1.1; 43123456, 7; 1000, 2000. Numbers stay numbers, however people write them."""
-        self.simulate()
+        self.simulated()
         rows = {"id": ("1.10", "1.1"), "phone": ("+43123456", "7"), "code": ("1e3", "2e3"), "plot": ("01.50", "2.50"),
                 "height": ("0.50", "-12.0"), "share": ("1e-05", ".25"), "floors": ("0", "12")}
         text = "wkt," + ",".join(rows) + "\n"
@@ -689,7 +697,7 @@ class Hazard(Case):
             self.assertEqual([float(row[name]) for row in table], numbers)
 
     def test_lists_of_objects_are_written_as_json(self):  # (2:a,b)
-        self.simulate()
+        self.simulated()
         given = {"tags": ["a", "b, \"c\""], "floors": [1, 2], "heights": [0.5, 12.25]}
         geometry = json.loads(ogr.CreateGeometryFromWkt(box(105, 150, 10, 8)).ExportToJson())
         self.write("o.geojson", json.dumps({"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "EPSG:2056"}},
@@ -717,7 +725,7 @@ class Hazard(Case):
         return [file.GetMetadataItem("TITLE")] + [file.GetRasterBand(b + 1).GetDescription() for b in range(file.RasterCount)]
 
     def test_an_object_of_some_width(self):
-        self.simulate()
+        self.simulated()
         done = self.run_well("hazard", self.path("out"))
         self.assertIn("hazard of a cell, 5 x 5 m", done.stderr)
         self.assertIn("(in plan, at any height)", self.titles("out/annual_frequency.tif")[1])
@@ -738,7 +746,7 @@ class Hazard(Case):
         self.assertTrue((bands_of(self.path("out/annual_frequency.tif"))[0] == value).all())
 
     def test_widths_in_centimetres_and_an_old_report_are_said(self):
-        self.simulate()
+        self.simulated()
         line = f'"LINESTRING ({WEST + 20} {NORTH - 200}, {WEST + 280} {NORTH - 200})"'
         self.write("road.csv", f"wkt,name,width,fid\n{line},narrow,100,1\n{line},wide,700,2\n")
         first = self.run_well("hazard", self.path("out"), "--objects", self.path("road.csv"), "--width", "100")
@@ -778,7 +786,7 @@ class Hazard(Case):
 
     def test_hazard_curves(self):
         """At 0 and at the thresholds they are the other maps, they fall with the energy, and with --width they are its maps."""
-        self.simulate()
+        self.simulated()
         for width in ([], ["--width", "10"]):
             self.run_well("hazard", self.path("out"), "--curves", "--overwrite", "-q", *width)
             energies = self.read_json("out/hazard.json")["curve_energies_kj"]
@@ -797,10 +805,10 @@ class Hazard(Case):
         self.assertFalse(os.path.exists(self.path("out/hazard_curves.tif")), "not asked for")
 
     def test_lines_have_a_width(self):
+        self.simulated()
         line = "LINESTRING (2600020 1200150, 2600280 1200150)"
         write_features(self.path("roads.gpkg"), "roads", [(line, ["road", 6.0]), (line, ["path", None])],
                        [("name", ogr.OFTString), ("width", ogr.OFTReal)])
-        self.simulate()
         found = {}
         for width in ("0", "6", "20"):
             more = [] if width == "0" else ["--width", width]
@@ -819,15 +827,15 @@ class Hazard(Case):
         self.refused("field width = -6", "hazard", self.path("out"), "--objects", self.path("bad.gpkg"), "--overwrite")
 
     def test_the_width_of_a_polygon_is_not_read(self):
+        self.simulated()
         house = "POLYGON ((2600100 1200140, 2600120 1200140, 2600120 1200160, 2600100 1200160, 2600100 1200140))"
         write_features(self.path("houses.gpkg"), "houses", [(house, ["house", "6 m"])],
                        [("name", ogr.OFTString), ("width", ogr.OFTString)])
-        self.simulate()
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "--overwrite")
         self.assertIn("the field width of 1 polygons is not used", done.stderr)
 
     def test_width_refusals(self):
-        self.simulate()
+        self.simulated()
         for width in ("0", "-3", "wide", "2000", "nan"):
             done = self.call("hazard", self.path("out"), "--width", width)
             self.assertEqual(done.returncode, 2, done.stderr)
@@ -859,8 +867,8 @@ class Hazard(Case):
         self.assertIn("lower than 0.5 m above the terrain", self.titles("out0.5/annual_frequency.tif")[0])
 
     def test_objects_need_the_same_inputs(self):
+        self.simulated()
         write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A"])], [("name", ogr.OFTString)])
-        self.simulate()
         write_dem(self.path("dem.tif"), heights() + 1.0)
         self.refused("has changed since the run", "hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
 

@@ -31,7 +31,7 @@ class InputCase(Case):
         return ["--dem", self.path(dem), "--sources", self.path(sources), "--diameter", "1.2", "--trajectories", trajectories]
 
     def run_flags(self, *more, out="out", **flags):
-        return self.run_well("run", *self.flags(**flags), "-o", self.path(out), *more)
+        return self.run_well("run", *self.flags(**flags), "-o", self.path(out), "--threads", "1", *more)
 
     def refused(self, *words, more=(), **flags):
         """Both `run` and `check` refuse it with the words; no folder appears."""
@@ -203,7 +203,7 @@ class FlagsForKeys(InputCase):
 
     def scenario(self, text, sources="sources.gpkg"):
         self.write("s.toml", text + f'dem = "dem.tif"\ntrajectories = 5\n[sources]\nfile = "{sources}"\n[blocks]\ndiameter = 1.2\n')
-        self.run_well("run", self.path("s.toml"), "-o", self.path("by-key"))
+        self.run_well("run", self.path("s.toml"), "-o", self.path("by-key"), "--threads", "1")
 
     def assert_as_by_key(self):
         for name in ("energy.tif", "passages.tif"):

@@ -14,10 +14,10 @@ import unittest
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import NORTH, RUN, TALUS, WEST, RunCase, bands_of, box, system, write_features
+from support import NORTH, RUN, TALUS, WEST, KeptRuns, RunCase, bands_of, box, system, write_features
 
 
-class Parts(RunCase):
+class Parts(KeptRuns, RunCase):
     def test_three_parts_and_three_rounds(self):
         self.run_scenario("whole", "--rounds", "3", "--threads", "2")
         for i in (3, 1, 2):
@@ -88,7 +88,7 @@ class Parts(RunCase):
 
     def test_a_merged_run_names_the_files_that_merge_has_read(self):
         """The machine of the first part had its input in another folder, which is not there."""
-        self.run_scenario("whole")
+        self.keep_scenario("whole")
         self.run_scenario("part2", "--part", "2/2")
         os.mkdir(self.path("far"))
         for name in ("s.toml", "dem.tif", "sources.gpkg", "screens.gpkg", "nets.gpkg"):
@@ -136,7 +136,7 @@ class Parts(RunCase):
 
     def test_what_cannot_be_merged(self):
         for i in (1, 2):
-            self.run_scenario(f"part{i}", "--part", f"{i}/2")
+            self.keep_scenario(f"part{i}", "--part", f"{i}/2")
         one, two = self.path("part1"), self.path("part2")
         done = self.run_well("run", self.path("s.toml"), "-o", one, "--part", "1/2", "--resume")  # a task that was requeued
         self.assertIn("part 1/2 is done", done.stderr)
@@ -193,7 +193,8 @@ class Parts(RunCase):
         self.fails(2, "the folder is there and not empty", arguments=again)
 
     def test_pieces_keep_their_numbers(self):
-        self.write("s.toml", RUN + "[effects.fragmentation]\nthreshold = 20\n")
+        self.write("s.toml", RUN.replace("trajectories = 40", "trajectories = 10") +
+                   "[effects.fragmentation]\nthreshold = 20\n")
         self.run_scenario("whole", "--rounds", "2")
         for i in (1, 2):
             self.run_scenario(f"part{i}", "--rounds", "2", "--part", f"{i}/2")
@@ -213,20 +214,20 @@ class Parts(RunCase):
         self.fails(2, "part.json", f"in format {number - 1}, this one reads format {number}", "run this part again",
                    arguments=["merge", self.path("m"), self.path("part1")])
 
-    def start(self, out, *more):
-        return subprocess.Popen([TALUS, "run", self.path("s.toml"), "-o", self.path(out), "-q", "--trajectories", "400", *more],
-                                stderr=subprocess.PIPE, text=True)
+    def start(self, out, *more, trajectories="400"):
+        return subprocess.Popen([TALUS, "run", self.path("s.toml"), "-o", self.path(out), "-q", "--trajectories",
+                                 trajectories, *more], stderr=subprocess.PIPE, text=True)
 
     def test_killed_ten_times(self):
         """Five times after a random time, the start and the end of a run included, and five times at a random share of the work."""
-        self.write("s.toml", RUN.replace('trajectories = 40\n', 'trajectories = 400\n'))
+        self.write("s.toml", RUN.replace('trajectories = 40\n', 'trajectories = 200\n'))
         start = time.monotonic()
         self.run_scenario("whole")
         whole = time.monotonic() - start
         luck = random.Random(1)
         for attempt in range(10):
             out = f"killed{attempt}"
-            process = self.start(out, "--checkpoint", "0", "--threads", "2", "--progress=machine")
+            process = self.start(out, "--checkpoint", "0", "--threads", "2", "--progress=machine", trajectories="200")
             if attempt % 2 == 0:
                 time.sleep(luck.uniform(0.1, 1.0) * whole)
             else:
@@ -235,12 +236,12 @@ class Parts(RunCase):
             process.communicate()
             if attempt % 2 == 1:  # there is something to resume
                 self.assertTrue(any(os.path.exists(self.path(f"{n}/unfinished/part.json")) for n in self.unfinished(out)))
-            self.run_scenario(out, "--resume", "--trajectories", "400", "--checkpoint", "0.05", "--threads", "1")
+            self.run_scenario(out, "--resume", "--trajectories", "200", "--checkpoint", "0.05", "--threads", "1")
             self.assert_same("whole", out)
             self.assertEqual([n for n in self.unfinished(out) if os.path.exists(self.path(f"{n}/unfinished/part.json"))], [])
 
     def test_interrupted_and_gone_on_with(self):
-        self.run_scenario("whole", "--trajectories", "400")
+        self.keep_scenario("whole", "--trajectories", "400")
         process = self.start("out", "--threads", "1", "--progress=machine")
         self.wait_for_progress(process, 5)
         process.send_signal(signal.SIGINT)
@@ -271,8 +272,8 @@ class Parts(RunCase):
 
     def test_the_command_that_goes_on_is_read_by_a_shell(self):
         odd = "a b'c$d"
+        self.keep_scenario("whole", "--trajectories", "400")
         os.mkdir(self.path(odd))
-        self.run_scenario("whole", "--trajectories", "400")
         process = self.start(odd + "/out", "--threads", "1", "--progress=machine")
         self.wait_for_progress(process, 5)
         process.send_signal(signal.SIGINT)
@@ -284,7 +285,7 @@ class Parts(RunCase):
 
     def test_killed_while_it_writes(self):
         """Finished maps are not written again, and the results are those of a run without interruption."""
-        self.run_scenario("whole", "--trajectories", "400")
+        self.keep_scenario("whole", "--trajectories", "400")
         for attempt in range(5):
             process = self.start(out := f"out{attempt}", "--checkpoint", "0")
             finished = []
@@ -292,6 +293,7 @@ class Parts(RunCase):
                 with contextlib.suppress(FileNotFoundError):  # the file has just been renamed
                     finished = [f"{self.path(n)}/{f}" for n in self.unfinished(out) for f in os.listdir(self.path(n))
                                 if f.endswith(".tif") and f.count(".") == 1]
+                time.sleep(0.001)
             process.kill()
             process.communicate()
             if self.unfinished(out):
@@ -335,12 +337,12 @@ class Parts(RunCase):
     def test_what_a_killed_merge_has_left(self):
         """The next merge of the name removes it; the saved work of a run, and what is not of the program, stay."""
         for i in (1, 2):
-            self.run_scenario(f"part{i}", "--part", f"{i}/2")
+            self.keep_scenario(f"part{i}", "--part", f"{i}/2")
         arguments = ["merge", self.path("out"), self.path("part1"), self.path("part2"), "-q"]
         killed = subprocess.Popen([TALUS, *arguments])
         hidden = f".out.talus-{killed.pid}"
         while killed.poll() is None and not os.path.exists(self.path(f"{hidden}/unfinished/.lock")):
-            pass
+            time.sleep(0.001)
         killed.send_signal(signal.SIGSTOP)
         self.fails(2, "another process is writing it", hidden, arguments=arguments)
         killed.kill()
@@ -366,7 +368,7 @@ class Parts(RunCase):
         self.assertGreater(rounds.max(), 0.1)
 
     def test_a_limit_of_memory_changes_no_bit(self):
-        self.run_scenario("whole")
+        self.keep_scenario("whole")
         self.run_scenario("limited", "--memory", "200M", "--threads", "1", "--checkpoint", "0.05")
         self.assert_same("whole", "limited")
         start = ["run", self.path("s.toml"), "-o", self.path("x"), "--threads", "1", "--memory"]
@@ -375,9 +377,9 @@ class Parts(RunCase):
         self.fails(2, "--memory", "1 thread:", "200M at least", arguments=[*start, "1M"])
 
     def test_a_terrain_that_is_larger_than_the_limit_of_memory(self):
-        """576 MB of heights and 144 MB of zones, with a limit of 200 MB. The rasters are filled in pieces of 64 MB, between
-        which the process is not measured."""
-        side, small = 12000, bands_of(self.path("dem.tif"))
+        """400 MB of heights and 100 MB of zones, with a limit of 200 MB. The rasters are filled in pieces of 64 MB,
+        between which the process is not measured. Without the limit it takes 530 MB, with the zones 630 MB."""
+        side, small = 10000, bands_of(self.path("dem.tif"))
         dem = gdal.GetDriverByName("GTiff").Create(self.path("large.tif"), side, side, 1, gdal.GDT_Float32,
                                                    ["TILED=YES", "SPARSE_OK=TRUE", "COMPRESS=DEFLATE"])
         dem.SetGeoTransform((WEST, 5.0, 0.0, NORTH - 300.0 + 5.0 * side, 0.0, -5.0))

@@ -9,11 +9,15 @@ import unittest
 from support import NORTH, WEST, Case
 
 SHORT = ("--surface", "bilinear", "-q")
-TOP = 160  # m from the northern edge of the DEM to the releases, 40 m above the foot: short paths, soon traced
+# m from the northern edge of the DEM to the releases, 10 m before the foot: short paths, soon traced. From 40 m before
+# it the effect of the shape below is found from the same loss on, 0.2, and takes less of the error away: 43, not 50 %
+# at 0.4.
+TOP = 190
 
 
 class Sites(Case):
-    """Two measurements of the slope of support.py, by the same model: north (36 blocks) and south (36 others)."""
+    """Two measurements of the slope of support.py, by the same model: north (36 blocks) and south (36 others). Where
+    all figures of two fits must be equal, half of the blocks do."""
 
     def measure(self, name, first, seed, kind, called=None, count=36, holdout=True):
         """Blocks of many shapes, released side by side; every third is held out. `kind`: the model that measures them."""
@@ -70,14 +74,14 @@ class Calibrate(Sites):
         self.assertEqual(sorted(os.listdir(self.path("both"))), ["a", "b", "calibration.json", "report.md"])
 
     def test_the_order_of_the_campaigns_changes_nothing(self):
-        paths = [self.measure("north", 0, 5, GROUND), self.measure("south", 40, 6, GROUND)]
+        paths = [self.measure("north", 0, 5, GROUND, count=18), self.measure("south", 40, 6, GROUND, count=18)]
         options = (*self.FIT, "--share", "theta_scale")
         first = self.result("calibrate", paths, "first", *options, "--threads", "1")
         self.assertEqual(self.result("calibrate", paths[::-1], "second", *options, "--threads", "2"), first)
         self.assertEqual([s["name"] for s in first["sites"]], ["north", "south"])
 
     def test_nothing_shared_is_each_alone(self):
-        paths = [self.measure("north", 0, 5, GROUND), self.measure("south", 40, 6, GROUND)]
+        paths = [self.measure("north", 0, 5, GROUND, count=18), self.measure("south", 40, 6, GROUND, count=18)]
         both = self.result("calibrate", paths, "both", *self.FIT)
         self.assertTrue(both["separate_fits"])
         for path, name, place in zip(paths, ("north", "south"), (0, 1)):

@@ -110,11 +110,14 @@ class Case(unittest.TestCase):
     """A fresh folder with dem.tif and sources.gpkg for every test."""
 
     def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="talus-test-")
+        self.folder = self.new_folder()
         self.addCleanup(shutil.rmtree, self.folder, True)
         write_dem(self.path("dem.tif"), heights())
         write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), ["cliff, east"])],
                        [("name", ogr.OFTString)])
+
+    def new_folder(self):
+        return tempfile.mkdtemp(prefix="talus-test-")
 
     def path(self, name):
         return os.path.join(self.folder, name)
@@ -174,6 +177,52 @@ class Case(unittest.TestCase):
 
     def assert_nothing_left(self, before):
         self.assertEqual(sorted(os.listdir(self.folder)), sorted(before))
+
+
+class KeptRuns:
+    """Before Case or RunCase: a result that several tests of a module begin with is made once, and each has a copy that
+    it may change. The folders of the tests have one name, one after the other: results hold the paths of inputs."""
+    place, store, results = None, None, {}
+
+    def new_folder(self):
+        gdal.SetConfigOption("OGR_CURRENT_DATE", "2024-01-01T00:00:00.000Z")  # else no GeoPackage is the same again
+        self.addCleanup(gdal.SetConfigOption, "OGR_CURRENT_DATE", None)
+        if KeptRuns.place is None or os.path.exists(KeptRuns.place):  # a program that was killed wrote there until now
+            KeptRuns.place = super().new_folder()
+        else:
+            os.mkdir(KeptRuns.place, 0o700)
+        return KeptRuns.place
+
+    def digests(self, without=None):
+        """Of all files in the folder of the test, but for those of one result."""
+        found = {}
+        for folder, _, names in os.walk(self.folder):
+            for name in names:
+                file = os.path.relpath(os.path.join(folder, name), self.folder)
+                if file.split(os.sep)[0] != without:
+                    with open(self.path(file), "rb") as content:
+                        found[file] = hashlib.sha256(content.read()).hexdigest()
+        return found
+
+    def keep(self, out, *commands):
+        """Runs the commands, which write the folder `out` and nothing else. Where an earlier test has run them and
+        every file in its folder was the same, bit by bit, and had the same path, the results are copied."""
+        key = json.dumps([self.folder, out, commands, self.digests()], sort_keys=True)
+        if key in KeptRuns.results:
+            shutil.rmtree(self.path(out), True)
+            shutil.copytree(KeptRuns.results[key], self.path(out))
+            return
+        before = self.digests(without=out)
+        for command in commands:
+            self.run_well(*command)
+        self.assertEqual(self.digests(without=out), before, "the commands have written beside their folder")
+        KeptRuns.store = KeptRuns.store or tempfile.TemporaryDirectory(prefix="talus-kept-")
+        KeptRuns.results[key] = os.path.join(KeptRuns.store.name, str(len(KeptRuns.results)))
+        shutil.copytree(self.path(out), KeptRuns.results[key])
+
+    def keep_scenario(self, out, *more):
+        """Of the scenario s.toml; first in a test, before its folder holds what is not in those of the others."""
+        self.keep(out, ["run", self.path("s.toml"), "-o", self.path(out), "-q", *more])
 
 
 # A run with all kinds of results.

@@ -10,7 +10,7 @@ namespace talus::io {
 CoveredCells mark_cells(const Parts& feature, std::uint8_t value, const Terrain& terrain, Raster<std::uint8_t>& cells) {
   CoveredCells covered;
   for (const OGRPolygon& polygon : feature.polygons)
-    for_each_cell(polygon, terrain.heights.grid, false, [&](int column, int row) {
+    for_each_cell(polygon, terrain.heights.grid, CellRule::Covered, [&](int column, int row) {
       cells.at(column, row) = value;
       ++covered.all;
       covered.with_height += std::isnan(terrain.heights.at(column, row)) ? 0U : 1U;

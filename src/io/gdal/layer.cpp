@@ -337,7 +337,7 @@ void Layer::add_valid(const OGRPolygon& polygon, Parts& parts, const std::string
   if (++mended_ <= 5) warnings_.push_back(where + ": polygon was invalid (" + reason + ") and was mended");
 }
 
-CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, bool touched) {
+CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, CellRule rule) {
   OGREnvelope box;
   geometry.getEnvelope(&box);
   const auto clamped = [](double value, int low, int high) {
@@ -353,7 +353,7 @@ CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, bool touched) {
   const Dataset window = memory_dataset(mask.columns, mask.rows, mask.marks.data());
   // GDAL counts cells whose centres lie on an edge to the west or east once, to the south and north twice: a little to
   // the north none lies on one.
-  const double off_edges = touched ? 0.0 : 1e-6 * grid.cell_y;
+  const double off_edges = rule == CellRule::Once ? 1e-6 * grid.cell_y : 0.0;
   std::array<double, 6> place{west * grid.cell_x, grid.cell_x, 0.0, north * grid.cell_y + off_edges, 0.0, -grid.cell_y};
   window->SetGeoTransform(place.data());
   GdalMessages messages;
@@ -362,7 +362,8 @@ CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, bool touched) {
   auto handle = OGRGeometry::ToHandle(const_cast<OGRGeometry*>(&geometry));
   const char* const options[] = {"ALL_TOUCHED=TRUE", nullptr};
   if (GDALRasterizeGeometries(window.get(), 1, &band, 1, &handle, nullptr, nullptr, &burn,
-                              touched ? const_cast<char**>(options) : nullptr, nullptr, nullptr) != CE_None)
+                              rule == CellRule::Touched ? const_cast<char**>(options) : nullptr, nullptr,
+                              nullptr) != CE_None)
     throw std::runtime_error("rasterizing failed: " + messages.take());
   window->FlushCache(false);
   return mask;

@@ -134,9 +134,15 @@ struct CellMask {
   std::vector<std::uint8_t> marks;
 };
 
-/// Marks the cells of a geometry in local metres: the cells whose centre it covers or, with `touched`, all that it
-/// touches. Both windows of a geometry are the same.
-CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, bool touched);
+/// Which cells are those of a geometry.
+enum class CellRule {
+  Covered,  ///< whose centre it covers, or has on its southern or northern edge
+  Once,     ///< whose centre it covers: one on the edge of two polygons belongs to one of them
+  Touched   ///< that it touches
+};
+
+/// Marks the cells of a geometry in local metres. The windows of a geometry are the same for each rule.
+CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, CellRule rule);
 
 /// Calls `visit(column, row)` (row 0 in the south) for the marked cells, row by row from the north-west.
 template <class Visit>
@@ -146,10 +152,10 @@ void for_each_cell(const CellMask& mask, Visit visit) {
     for (int i = 0; i < mask.columns; ++i)
       if (*mark++ != 0) visit(mask.column + i, mask.north_row - j);
 }
-/// Visits the cells of a geometry in the same order. @param touched  as of `mask_of`
+/// Visits the cells of a geometry in the same order.
 template <class Visit>
-void for_each_cell(const OGRGeometry& geometry, const Grid& grid, bool touched, Visit visit) {
-  for_each_cell(mask_of(geometry, grid, touched), visit);
+void for_each_cell(const OGRGeometry& geometry, const Grid& grid, CellRule rule, Visit visit) {
+  for_each_cell(mask_of(geometry, grid, rule), visit);
 }
 
 /// "cliffs.gpkg: fields read: diameter 0.5 to 2 m (2 of 3 features, 1 empty), name (3 of 3 features)".

@@ -85,7 +85,7 @@ void shift(OGRPolygon& polygon, double east, double north) {
 void describe(OGRFeature& row, const Cells& cells, const OGRPolygon& local) {
   double sum = 0.0, steepest = 0.0, area = 0.0;
   GIntBig count = 0;
-  for_each_cell(local, cells.grid(), false, [&](int column, int cell_row) {
+  for_each_cell(local, cells.grid(), CellRule::Covered, [&](int column, int cell_row) {
     const double tangent = cells.tangent(column, cell_row);
     sum += std::atan(tangent);
     steepest = std::max(steepest, tangent);

@@ -217,7 +217,7 @@ void append_cells(const OGRLineString& line, const Grid& grid, std::vector<Cell>
   for (int i = 1; i < line.getNumPoints(); ++i) {
     OGRLineString segment;
     for (const int end : {i - 1, i}) segment.addPoint(line.getX(end), line.getY(end));
-    for_each_cell(segment, grid, true, [&](int column, int row) {
+    for_each_cell(segment, grid, CellRule::Touched, [&](int column, int row) {
       const Cell cell{column, row};
       if (runs_through(segment, grid, cell)) cells.push_back(cell);
     });
@@ -233,7 +233,7 @@ std::vector<Cell> cells_of(const Parts& parts, const Grid& grid, PolygonCells& o
   const auto add = [&](int column, int row) { cells.push_back({column, row}); };
   for (const OGRPolygon& polygon : parts.polygons) {
     const std::size_t before = cells.size();
-    const CellMask inside = mask_of(polygon, grid, false), at_all = mask_of(polygon, grid, true);
+    const CellMask inside = mask_of(polygon, grid, CellRule::Once), at_all = mask_of(polygon, grid, CellRule::Touched);
     for_each_cell(inside, add);
     if (cells.size() == before)
       for_each_cell(at_all, add);
