@@ -68,7 +68,6 @@ struct TallyValues {
       for (std::size_t i = 0; i < values.size(); i += bands) std::ranges::copy(untouched, &values[i]);
       return;
     }
-    tally.memory().keep_below_limit();  // reading a record loads its neighbours too
     const int end = part.column + part.columns;
     for (int column = part.column; column < end; ++column) tally.prefetch_record(column, part.row);
     for (int column = part.column; column < end; ++column, values = values.subspan(bands))
@@ -77,14 +76,18 @@ struct TallyValues {
 
   void of_window(const CellWindow& window, const CellRule& rule, std::span<double> values) const {
     const int end = window.column + window.columns;
-    for (int row = window.row; row < window.row + window.rows; ++row)
+    for (int row = window.row; row < window.row + window.rows; ++row) {
+      if (row % kRowsBetween == 0) tally.memory().keep_below_limit();  // reading a record loads its neighbours too
       for (int column = window.column, next = 0; column < end; column = next) {
         next = std::min(end, (column / kRegionSide + 1) * kRegionSide);
         const std::size_t size = static_cast<std::size_t>(next - column) * untouched.size();
         of_part({column, row, next - column, 1}, rule, values.first(size));
         values = values.subspan(size);
       }
+    }
   }
+
+  static constexpr int kRowsBetween = 8;  // looking at the memory takes as long as some cells
 };
 
 auto filling(TallyValues values, std::function<CellRule()> make_rule) {

@@ -1,5 +1,6 @@
 #include "talus/run/write_maps.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 
@@ -27,18 +28,22 @@ struct Part {
   const Map* map;
   io::MapFile* file;
   std::size_t i;
+  std::uint64_t place;
 };
 
 }  // namespace
 
-// The parts of all maps are one list, so that no thread waits at the end of a map.
+// The parts of all maps are one list, so that no thread waits at the end of a map; those of one place follow each
+// other, so that records of cells are loaded once for all maps.
 void write_maps(const std::vector<Map>& maps, const io::MapTarget& target, int threads) {
   std::vector<std::unique_ptr<io::MapFile>> files;
   std::vector<Part> parts;
   for (const Map* const map : missing_maps(maps, target.folder)) {
     files.push_back(std::make_unique<io::MapFile>(*map, target));
-    for (std::size_t i = 0; i < files.back()->parts(); ++i) parts.push_back({map, files.back().get(), i});
+    for (std::size_t i = 0; i < files.back()->parts(); ++i)
+      parts.push_back({map, files.back().get(), i, files.back()->place_of(i)});
   }
+  std::ranges::stable_sort(parts, {}, &Part::place);
   std::atomic<std::size_t> next = 0;
   in_threads(
       threads,

@@ -80,6 +80,17 @@ void TilePyramid<T>::add_parts(const Place& place) {
     for (int x = 2 * place.x; x < std::min(2 * place.x + 2, under.across); ++x) add_parts({place.level - 1, x, y});
 }
 
+template <class T>
+std::uint64_t TilePyramid<T>::place_of(std::size_t i) const {
+  const Place& place = parts_[i].place;
+  std::uint64_t along = 0;
+  for (int bit = 0; bit < 31 - place.level; ++bit) {  // the bits of row and column in turn
+    along |= (static_cast<std::uint64_t>(place.x) >> bit & 1U) << 2 * (bit + place.level);
+    along |= (static_cast<std::uint64_t>(place.y) >> bit & 1U) << (2 * (bit + place.level) + 1);
+  }
+  return along;
+}
+
 /// The cells of the map under a tile.
 template <class T>
 CellWindow TilePyramid<T>::cells_of(const Place& place) const {

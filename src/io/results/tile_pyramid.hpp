@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstdint>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -39,6 +40,8 @@ class TilePyramid {
   TilePyramid(const Map& map, const MapTarget& target, int side);
 
   std::size_t parts() const { return parts_.size(); }
+  /// Where a part lies on the curve, for maps of one grid.
+  std::uint64_t place_of(std::size_t i) const;
   void make_part(std::size_t i, TileStore& store);
 
   /// The full resolution and its overviews. After all parts are made.

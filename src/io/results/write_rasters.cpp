@@ -49,6 +49,7 @@ class MapFile::Tiles {
  public:
   virtual ~Tiles() = default;
   virtual std::size_t parts() const = 0;
+  virtual std::uint64_t place_of(std::size_t i) const = 0;
   virtual void make_part(std::size_t i, TileStore& store) = 0;
   /// False if `proceed` ended it.
   virtual bool write(const std::filesystem::path& file, const TileStore& store) = 0;
@@ -75,6 +76,7 @@ class MapFile::TilesOf : public MapFile::Tiles {
   TilesOf(const Map& map, const MapTarget& target)
       : map_(map), target_(target), pyramid_(map, target, side_of(target)) {}
   std::size_t parts() const override { return pyramid_.parts(); }
+  std::uint64_t place_of(std::size_t i) const override { return pyramid_.place_of(i); }
   void make_part(std::size_t i, TileStore& store) override { pyramid_.make_part(i, store); }
   bool write(const std::filesystem::path& file, const TileStore& store) override {
     const CogFormat format{side_of(target_), kDeflate, tags_of<T>(map_, target_)};
@@ -99,6 +101,10 @@ MapFile::~MapFile() = default;
 
 std::size_t MapFile::parts() const {
   return tiles_->parts();
+}
+
+std::uint64_t MapFile::place_of(std::size_t i) const {
+  return tiles_->place_of(i);
 }
 
 bool MapFile::write_part(std::size_t i) {

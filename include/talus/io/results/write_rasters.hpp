@@ -45,6 +45,10 @@ class MapFile {
   /// Number of parts, at least 1. Before the first is written.
   std::size_t parts() const;
 
+  /// Ascending from part to part. Parts of several maps of one grid that are written in this order need the same cells
+  /// one after the other. Before the first is written.
+  std::uint64_t place_of(std::size_t i) const;
+
   /// Writes a part, each once, in any order and from any thread. The last one gives the file its name.
   ///
   /// @return true if the file is complete; false if other parts are missing, or if `proceed` ended it
