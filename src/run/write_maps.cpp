@@ -28,22 +28,24 @@ struct Part {
   const Map* map;
   io::MapFile* file;
   std::size_t i;
-  std::uint64_t place;
+  std::uint64_t square;
 };
+
+constexpr std::uint64_t kTilesOfSquare = 16;  // their records are loaded once for all maps
 
 }  // namespace
 
-// The parts of all maps are one list, so that no thread waits at the end of a map; those of one place follow each
-// other, so that records of cells are loaded once for all maps.
+// The parts of all maps are one list, so that no thread waits at the end of a map. It goes square by square, so that
+// all maps need the same records one after the other; in a square map by map, so that few overviews grow at once.
 void write_maps(const std::vector<Map>& maps, const io::MapTarget& target, int threads) {
   std::vector<std::unique_ptr<io::MapFile>> files;
   std::vector<Part> parts;
   for (const Map* const map : missing_maps(maps, target.folder)) {
     files.push_back(std::make_unique<io::MapFile>(*map, target));
     for (std::size_t i = 0; i < files.back()->parts(); ++i)
-      parts.push_back({map, files.back().get(), i, files.back()->place_of(i)});
+      parts.push_back({map, files.back().get(), i, files.back()->place_of(i) / kTilesOfSquare});
   }
-  std::ranges::stable_sort(parts, {}, &Part::place);
+  std::ranges::stable_sort(parts, {}, &Part::square);
   std::atomic<std::size_t> next = 0;
   in_threads(
       threads,

@@ -40,7 +40,7 @@ class TilePyramid {
   TilePyramid(const Map& map, const MapTarget& target, int side);
 
   std::size_t parts() const { return parts_.size(); }
-  /// Where a part lies on the curve, for maps of one grid.
+  /// Where a part begins on the curve, in tiles.
   std::uint64_t place_of(std::size_t i) const;
   void make_part(std::size_t i, TileStore& store);
 

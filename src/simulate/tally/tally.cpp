@@ -44,15 +44,12 @@ std::size_t cell_in_region(int column, int row) {
   return static_cast<std::size_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
 }
 
-/// Counting sort by the cells of visits of values that belong to them; those of one cell keep their order.
-template <class Value>
-std::vector<Value> sorted_by_cell(const std::vector<Value>& values, const std::vector<Visit>& visits) {
+/// By cell of a region, where its visits begin when they are sorted by cell.
+std::array<std::uint32_t, kRegionCells + 1> starts_of_cells(const VisitList& visits) {
   std::array<std::uint32_t, kRegionCells + 1> start{};
-  for (const Visit& visit : visits) ++start[visit.cell + 1U];
+  visits.for_each([&](const Visit& visit) { ++start[visit.cell + 1U]; });
   for (std::size_t cell = 0; cell < kRegionCells; ++cell) start[cell + 1] += start[cell];
-  std::vector<Value> sorted(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) sorted[start[visits[i].cell]++] = values[i];
-  return sorted;
+  return start;
 }
 
 /// Prefetches memory that is needed soon: records are scattered, and waiting for them would take most of the time.
@@ -199,6 +196,26 @@ struct Tally::Group {
   std::size_t record;
 };
 
+/// What scoring one region after the other needs. Buffers that keep their memory.
+struct Tally::Work {
+  std::vector<Visit> sorted;  // by cell; those of one cell keep their order
+  std::vector<float> totals;  // of the sorted visits
+  std::vector<Group> groups;
+  CellValues values;
+
+  void sort(const RegionVisits& region) {
+    auto start = starts_of_cells(region.visits);
+    if (sorted.size() < region.visits.size()) sorted.resize(region.visits.size());
+    totals.resize(region.totals.size());
+    auto total = region.totals.begin();
+    region.visits.for_each([&](const Visit& visit) {
+      const std::uint32_t place = start[visit.cell]++;
+      sorted[place] = visit;
+      if (!totals.empty()) totals[place] = *total++;
+    });
+  }
+};
+
 void Tally::EndRegions::operator()(Region* regions) const noexcept {
   if (memory.has_limit()) return;
   std::destroy_n(regions, count);
@@ -238,33 +255,33 @@ Tally::Tally(Tally&&) noexcept = default;
 
 std::uint64_t Tally::add(const VisitBatch& batch) {
   std::uint64_t scored = 0;
+  Work work;
   std::vector<std::size_t> busy;  // regions that another worker holds: taken last
   for (const auto& [index, visits] : batch.regions()) {
     if (visits.visits.empty()) continue;
     const std::unique_lock lock(regions_[index].mutex, std::try_to_lock);
     if (lock.owns_lock())
-      scored += score(index, visits, batch);
+      scored += score(index, visits, batch, work);
     else
       busy.push_back(index);
   }
   for (const std::size_t index : busy) {
     const std::unique_lock lock(regions_[index].mutex);
-    scored += score(index, batch.regions().at(index), batch);
+    scored += score(index, batch.regions().at(index), batch, work);
   }
   return scored;
 }
 
-std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const VisitBatch& batch) {
+std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const VisitBatch& batch, Work& work) {
   memory().keep_below_limit();
   TALUS_EXPECT(index < region_count_, "a visit lies in a region of the tally");
   Region& region = regions_[index];
   TALUS_EXPECT(batch.levels() <= 1 + energy_thresholds(), "a batch has no other thresholds than the tally");
   TALUS_EXPECT(visits.totals.size() == (keep_total_ ? visits.visits.size() : 0), "each visit has its total energy");
-  const std::vector<Visit> sorted = sorted_by_cell(visits.visits, visits.visits);
-  std::vector<float> sorted_totals;
-  if (keep_total_) sorted_totals = sorted_by_cell(visits.totals, visits.visits);
-  const std::span<const Visit> all(sorted);
-  std::vector<Group> groups;
+  work.sort(visits);
+  const std::span<const Visit> all = std::span(work.sorted).first(visits.visits.size());
+  std::vector<Group>& groups = work.groups;
+  groups.clear();
   for (std::size_t i = 0; i < all.size();) {
     const std::size_t first = i, cell = all[i].cell;
     while (i < all.size() && all[i].cell == cell) ++i;
@@ -273,7 +290,7 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
   TALUS_EXPECT(region.records.size() <= kRegionCells, "a cell has one record");
   std::uint64_t scored = 0;
   ReachOf reach(batch, index);
-  CellValues values;
+  CellValues& values = work.values;
   values.keep_annual_shares = hazard_ != nullptr;
   values.keep_totals = keep_total_;
   if (hazard_) region.make_hazards();
@@ -291,8 +308,8 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
     CellRecord& record = region.records[groups[i].record];
     gather(groups[i].visits, batch, values, record, reach);
     if (keep_total_) {
-      const auto first = static_cast<std::size_t>(groups[i].visits.data() - sorted.data());
-      gather_totals(groups[i].visits, std::span(sorted_totals).subspan(first), batch, values.totals);
+      const auto first = static_cast<std::size_t>(groups[i].visits.data() - all.data());
+      gather_totals(groups[i].visits, std::span(work.totals).subspan(first), batch, values.totals);
       region.totals[groups[i].record].add({values.totals.data(), values.count});
     }
     const PerQuantity<float> largest = record.add(values);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 
 #include "span_length.hpp"
 #include "span_maxima.hpp"
@@ -20,6 +21,22 @@ LengthRules length_rules(const OutputSettings& output) {
   return rules;
 }
 
+Visit& VisitList::append(const Visit& visit, std::vector<Piece>& spare) {
+  if (used_ == kPiece) {
+    if (spare.empty()) spare.push_back(std::make_unique_for_overwrite<Visit[]>(kPiece));
+    pieces_.push_back(std::move(spare.back()));
+    spare.pop_back();
+    used_ = 0;
+  }
+  return pieces_.back()[used_++] = visit;
+}
+
+void VisitList::clear(std::vector<Piece>& spare) {
+  std::ranges::move(pieces_, std::back_inserter(spare));
+  pieces_.clear();
+  used_ = kPiece;
+}
+
 VisitBatch::VisitBatch(const Grid& grid, LengthRules lengths)
     : grid_(grid),
       lengths_(std::move(lengths)),
@@ -32,7 +49,7 @@ void VisitBatch::clear() {
     if (region->second.visits.empty()) {
       region = regions_.erase(region);  // not visited by this batch: the work has moved on
     } else {
-      region->second.visits.clear();  // keeps its memory for the next batch
+      region->second.visits.clear(spare_);
       region->second.lengths.clear();
       region->second.totals.clear();
       ++region;
@@ -71,7 +88,7 @@ void VisitBatch::add(const Path& path, BlockSize size, std::uint32_t source, std
     add(path, from, spans.size());
   }
   if (region_ == nullptr) return;
-  Visit& last = region_->visits.back();
+  Visit& last = *visit_;
   last.deposited = rests(path.end) ? 1 : 0;
   last.trapped = path.end == End::Trapped ? 1 : 0;
   last.left = path.end == End::Left ? 1 : 0;
@@ -147,7 +164,7 @@ void VisitBatch::add(std::span<const Span> spans) {
 
 /// Adds impacts to the current visit; what its field cannot hold goes to further visits of the same cell.
 void VisitBatch::add_impacts(std::uint32_t impacts) {
-  Visit* last = &region_->visits.back();
+  Visit* last = visit_;
   for (; impacts > kMostImpacts - last->impacts; last = &new_visit(column_, row_)) {
     impacts -= kMostImpacts - last->impacts;
     last->impacts = kMostImpacts;
@@ -197,7 +214,7 @@ void VisitBatch::lengthen(const Span& span, float length, const Moment& from, co
 /// Writes the lengths of the current visit into it.
 void VisitBatch::close_visit() {
   if (region_ == nullptr) return;
-  Visit& visit = region_->visits.back();
+  Visit& visit = *visit_;
   std::size_t top = here_.size() - 1;
   while (top > 0 && here_[top] == 0.0F) --top;
   bool mixed = false;
@@ -237,10 +254,11 @@ Visit& VisitBatch::new_visit(int column, int row) {
     region_ = &regions_[index];
   }
   const auto cell = static_cast<std::uint16_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
-  region_->visits.push_back({{}, cell, static_cast<std::uint16_t>(trajectories_.size() - 1), 0, 0, 0, 0, 0, 0, 0.0F});
   if (keep_total_) region_->totals.push_back(0.0F);
   ++size_;
-  return region_->visits.back();
+  const auto trajectory = static_cast<std::uint16_t>(trajectories_.size() - 1);
+  visit_ = &region_->visits.append({{}, cell, trajectory, 0, 0, 0, 0, 0, 0, 0.0F}, spare_);
+  return *visit_;
 }
 
 }  // namespace talus

@@ -45,8 +45,8 @@ class MapFile {
   /// Number of parts, at least 1. Before the first is written.
   std::size_t parts() const;
 
-  /// Ascending from part to part. Parts of several maps of one grid that are written in this order need the same cells
-  /// one after the other. Before the first is written.
+  /// Where a part lies, counted in tiles along a curve that fills square after square; the same for all maps of a grid.
+  /// Ascending from part to part. Before the first is written.
   std::uint64_t place_of(std::size_t i) const;
 
   /// Writes a part, each once, in any order and from any thread. The last one gives the file its name.

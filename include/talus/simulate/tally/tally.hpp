@@ -76,6 +76,7 @@ class Tally {
  private:
   struct Region;
   struct Group;
+  struct Work;
   /// Destroys the regions. Those in a scratch file are dropped with the file, without reading them.
   struct EndRegions {
     MemoryPolicy memory;
@@ -88,7 +89,7 @@ class Tally {
   };
 
   const Region& region_of(int column, int row) const;
-  std::uint64_t score(std::size_t index, const RegionVisits& visits, const VisitBatch& batch);
+  std::uint64_t score(std::size_t index, const RegionVisits& visits, const VisitBatch& batch, Work& work);
   void add_lengths(const Group& group, std::span<const float> mixed, const VisitBatch& batch, Region& region) const;
   std::size_t energy_thresholds() const { return thresholds_[Quantity::Energy].size(); }
   void count_exceedances(std::uint32_t* over, const CellValues& values, const PerQuantity<float>& largest) const;

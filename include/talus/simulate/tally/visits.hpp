@@ -40,9 +40,34 @@ LengthRules length_rules(const OutputSettings& output);
 
 struct Moment;
 
+/// Visits in the order in which they came, in pieces of memory of one size: growing moves no visit, and what one list
+/// gives back another takes. Vectors would leave holes of all sizes between the records of the tally.
+class VisitList {
+ public:
+  using Piece = std::unique_ptr<Visit[]>;
+
+  /// @param spare  pieces that no list uses; if there is none, one is made
+  Visit& append(const Visit& visit, std::vector<Piece>& spare);
+  /// Gives all pieces back.
+  void clear(std::vector<Piece>& spare);
+
+  std::size_t size() const { return pieces_.size() * kPiece + used_ - kPiece; }
+  bool empty() const { return pieces_.empty(); }
+  template <class Action>
+  void for_each(const Action& action) const {
+    for (const Piece& piece : pieces_)
+      for (const Visit& visit : std::span(piece.get(), &piece == &pieces_.back() ? used_ : kPiece)) action(visit);
+  }
+
+ private:
+  static constexpr std::size_t kPiece = 256;
+  std::vector<Piece> pieces_;
+  std::size_t used_ = kPiece;  // of the last piece
+};
+
 /// The visits of a batch to one region of the grid.
 struct RegionVisits {
-  std::vector<Visit> visits;
+  VisitList visits;
   std::vector<float> lengths;  ///< of mixed visits: all counted parts, then those above each threshold [m]
   std::vector<float> totals;   ///< largest `total` of each visit [m^2/s^2]; empty if it is not kept
 };
@@ -95,9 +120,7 @@ class VisitBatch {
   static constexpr std::size_t kBytes = 14U << 20U;  // of visits
   static constexpr std::size_t kTrajectories = 60'000;
 
-  Visit& visit(int column, int row) {
-    return column == column_ && row == row_ ? region_->visits.back() : new_visit(column, row);
-  }
+  Visit& visit(int column, int row) { return column == column_ && row == row_ ? *visit_ : new_visit(column, row); }
   Visit& new_visit(int column, int row);
   void begin(Trajectory trajectory);
   void add(const Path& path, std::size_t from, std::size_t to);
@@ -116,14 +139,16 @@ class VisitBatch {
   std::vector<float> here_;    // lengths of the current visit by the number of thresholds that they are above [m]
   int regions_across_;
   std::unordered_map<std::size_t, RegionVisits> regions_;
+  std::vector<VisitList::Piece> spare_;
   std::vector<Trajectory> trajectories_;
   AnnualShare annual_share_;
   std::size_t size_ = 0;
   bool pieces_ = false;
   bool keep_total_ = false;
-  float rotation_ = 0.0F;           // twice the energy of the current rotation per mass [m^2/s^2]
-  int column_ = -1, row_ = -1;      // cell of the current visit
-  RegionVisits* region_ = nullptr;  // its last visit is the current one
+  float rotation_ = 0.0F;       // twice the energy of the current rotation per mass [m^2/s^2]
+  int column_ = -1, row_ = -1;  // cell of the current visit
+  RegionVisits* region_ = nullptr;
+  Visit* visit_ = nullptr;  // the current one, the last of its region
   std::size_t region_index_ = 0;
 };
 

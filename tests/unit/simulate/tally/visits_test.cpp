@@ -30,7 +30,7 @@ std::map<Cell, Seen> seen(const VisitBatch& batch, const Grid& grid) {
   const int across = (grid.columns + kRegionSide - 1) / kRegionSide;
   std::map<Cell, Seen> cells;
   for (const auto& [index, visits_of_region] : batch.regions())
-    for (const Visit& visit : visits_of_region.visits) {
+    visits_of_region.visits.for_each([&](const Visit& visit) {
       const int region = static_cast<int>(index);
       Seen& cell = cells[{region % across * kRegionSide + visit.cell % kRegionSide,
                           region / across * kRegionSide + visit.cell / kRegionSide}];
@@ -39,7 +39,7 @@ std::map<Cell, Seen> seen(const VisitBatch& batch, const Grid& grid) {
       cell.impacts += static_cast<int>(visit.impacts);
       cell.deposits += static_cast<int>(visit.deposited);
       cell.visits += 1;
-    }
+    });
   return cells;
 }
 
