@@ -258,7 +258,7 @@ class Signals(Faults):
 
     def test_the_time_that_a_queue_allows(self):
         """At a limit of processor time (SIGXCPU) the work is kept as at an interruption."""
-        process = self.start("--trajectories", "200000", preexec_fn=limit(resource.RLIMIT_CPU, 1, 60))
+        process = self.start("--trajectories", "200000", preexec_fn=limit(resource.RLIMIT_CPU, 2, 60))
         error = process.communicate(timeout=60)[1]
         self.assertEqual(process.returncode, 130, error)
         self.assertIn("--resume", error)
@@ -270,7 +270,7 @@ class Limits(Faults):
         """From too little to start to nearly enough: one error, no crash, nothing left."""
         before = os.listdir(self.folder)
         failed = 0
-        for megabytes in (100, 150, 200, 225, 300, 400):  # PROJ looks long where it has little: so not 250 besides 300
+        for megabytes in (100, 150, 200, 225, 300, 400):  # from 250 on PROJ searches for seconds before it fails
             size = megabytes * 1_000_000
             done = self.call(*self.begin, "-q", "--threads", "2", preexec_fn=limit(resource.RLIMIT_AS, size))
             if done.returncode == 0:

@@ -11,8 +11,8 @@ import unittest
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import (NORTH, TALUS, WEST, Case, KeptRuns, bands_of, box, heights, log_left_by_a_viewer, rows_of,
-                     sqlite_rows, write_dem, write_features)
+from support import (NORTH, TALUS, WEST, Case, KeptRuns, OneThread, bands_of, box, heights, log_left_by_a_viewer,
+                     rows_of, sqlite_rows, write_dem, write_features)
 
 RUN = """dem = "dem.tif"
 trajectories = 200
@@ -24,7 +24,7 @@ diameter = 0.8
 FEW = RUN.replace("200", "50")  # where no figure hangs on the number: what is equal, a bound, or a text
 
 
-class Hazard(KeptRuns, Case):
+class Hazard(OneThread, KeptRuns, Case):
     def setUp(self):
         super().setUp()
         write_features(self.path("sources.gpkg"), "sources",
@@ -33,13 +33,11 @@ class Hazard(KeptRuns, Case):
         self.write("s.toml", RUN)
 
     def simulate(self, out="out", *more):
-        """By one thread, which costs least: that threads change no byte is a test of its own."""
-        threads = () if "--threads" in more else ("--threads", "1")
-        self.run_well("run", self.path("s.toml"), "-o", self.path(out), "-q", *more, *threads)
+        self.run_well("run", self.path("s.toml"), "-o", self.path(out), "-q", *more)
 
     def simulated(self, out="out"):
         """As `simulate`, of what several tests begin with: most with the scenario as setUp leaves it."""
-        self.keep_scenario(out, "--threads", "1")
+        self.keep_scenario(out)
 
     def hashes(self, out):
         hashes = {}
@@ -551,7 +549,7 @@ class Hazard(KeptRuns, Case):
         shares = [float(row["share"]) for row in self.read_table("out/objects_sources.csv") if row["object"] == "B"]
         self.assertAlmostEqual(sum(shares), 1.0, 4)
         self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "--overwrite", "-q",
-                      "--threads", "1")
+                      "--threads", "2")
         again = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         self.assertEqual(rows, again)
 
@@ -742,7 +740,7 @@ class Hazard(KeptRuns, Case):
             self.assertEqual(self.read_json("out/hazard.json")["object"], {"width_m": width, "passages_below_m": 0})
         # Over all places an object of W is hit (W + D) times the length of all paths: D is 0.8 m. Rows at the edge lose a little.
         self.assertAlmostEqual(sums[20] / sums[4], 20.8 / 4.8, delta=0.05)
-        self.run_well("hazard", self.path("out"), "--overwrite", "--width", "20", "-q", "--threads", "1")
+        self.run_well("hazard", self.path("out"), "--overwrite", "--width", "20", "-q", "--threads", "2")
         self.assertTrue((bands_of(self.path("out/annual_frequency.tif"))[0] == value).all())
 
     def test_widths_in_centimetres_and_an_old_report_are_said(self):

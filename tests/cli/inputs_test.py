@@ -10,7 +10,7 @@ import zipfile
 import numpy as np
 from osgeo import gdal, ogr, osr
 
-from support import NORTH, WEST, Case, box, heights, rows_of, system, write_dem, write_features
+from support import NORTH, WEST, Case, OneThread, box, heights, rows_of, system, write_dem, write_features
 
 X, Y = WEST + 150.0, NORTH - 65.0  # on the slope
 
@@ -26,12 +26,12 @@ def write_shapefile(path, diameters):
         layer.CreateFeature(feature)
 
 
-class InputCase(Case):
+class InputCase(OneThread, Case):
     def flags(self, sources="sources.gpkg", dem="dem.tif", trajectories="5"):
         return ["--dem", self.path(dem), "--sources", self.path(sources), "--diameter", "1.2", "--trajectories", trajectories]
 
     def run_flags(self, *more, out="out", **flags):
-        return self.run_well("run", *self.flags(**flags), "-o", self.path(out), "--threads", "1", *more)
+        return self.run_well("run", *self.flags(**flags), "-o", self.path(out), *more)
 
     def refused(self, *words, more=(), **flags):
         """Both `run` and `check` refuse it with the words; no folder appears."""
@@ -203,7 +203,7 @@ class FlagsForKeys(InputCase):
 
     def scenario(self, text, sources="sources.gpkg"):
         self.write("s.toml", text + f'dem = "dem.tif"\ntrajectories = 5\n[sources]\nfile = "{sources}"\n[blocks]\ndiameter = 1.2\n')
-        self.run_well("run", self.path("s.toml"), "-o", self.path("by-key"), "--threads", "1")
+        self.run_well("run", self.path("s.toml"), "-o", self.path("by-key"))
 
     def assert_as_by_key(self):
         for name in ("energy.tif", "passages.tif"):

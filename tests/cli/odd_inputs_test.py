@@ -12,8 +12,8 @@ import unittest
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import (NORTH, TALUS, WEST, Case, KeptRuns, RunCase, box, heights, rows_of, system, write_dem,
-                     write_features)
+from support import (NORTH, TALUS, WEST, Case, KeptRuns, OneThread, RunCase, box, heights, rows_of, system,
+                     write_dem, write_features)
 
 BARRIER_PICTURE = os.path.join(os.path.dirname(__file__), "../../tools/scripts/figures/barrier_picture.py")
 # Draws the pictures of several screens, p0.png and so on, in one process: matplotlib is long in starting.
@@ -25,14 +25,14 @@ for i, name in enumerate(names):
 """
 
 
-class NamesOfFiles(Case):
+class NamesOfFiles(OneThread, Case):
     def screens(self, *ids):
         line = "LINESTRING (2600000 {0},2600300 {0})"
         write_features(self.path("screens.gpkg"), "screens",
                        [(line.format(1200100 + i), [name]) for i, name in enumerate(ids)], [("id", ogr.OFTString)])
         self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 40\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 0.8\n'
                              '[screens]\nfile = "screens.gpkg"\n')
-        self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "-q", "--threads", "1")
+        self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "-q")
 
     def files_of(self, screen):
         """The names of the files that `talus barrier` adds for a screen."""
@@ -109,7 +109,7 @@ class NamesOfFiles(Case):
             self.assertTrue(os.path.exists(self.path(f"p{i}.png")), i)
 
 
-class Elevations(Case):
+class Elevations(OneThread, Case):
     """DEMs that are known to be wrong."""
 
     def dem(self, place="2600000.0, 5.0, 0.0, 1200300.0, 0.0, -5.0", band=""):
@@ -248,7 +248,7 @@ class LocalGrids(Case):
                 os.remove(self.path("metres.tif.gpkg"))
 
 
-class Places(Case):
+class Places(OneThread, Case):
     def check(self, sources):
         return ["check", "--dem", self.path("dem.tif"), "--sources", self.path(sources), "--diameter", "0.8",
                 "--trajectories", "5"]
@@ -301,7 +301,7 @@ class Places(Case):
         self.assertEqual(self.axes("cells.gpkg", "source_points"), 2)
 
 
-class Options(Case):
+class Options(OneThread, Case):
     def test_seeds(self):
         for seed in ("-1", "18446744073709551615"):
             self.fails(2, "--seed", seed, "must be a whole number, 0 to 9007199254740991",
@@ -434,7 +434,7 @@ class Bound(Case):
         self.assertLess(record["peak_memory_mb"], 1500)
 
 
-class Forged(KeptRuns, RunCase):
+class Forged(OneThread, KeptRuns, RunCase):
     """Files of results that another program made to do harm. Each is refused at once."""
 
     def setUp(self):
@@ -531,7 +531,7 @@ class Forged(KeptRuns, RunCase):
         self.refused("rows", "is damaged")
 
 
-class ForgedHazard(KeptRuns, RunCase):
+class ForgedHazard(OneThread, KeptRuns, RunCase):
     def setUp(self):
         super().setUp()
         self.keep_scenario("out")

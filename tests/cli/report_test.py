@@ -14,7 +14,7 @@ import zlib
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import NORTH, TALUS, WEST, KeptRuns, RunCase, box, heights, write_dem, write_features
+from support import NORTH, TALUS, WEST, KeptRuns, OneThread, RunCase, box, heights, write_dem, write_features
 
 HOSTILE = "<script>alert(1)</script>&amp;'\"\u202e</svg>"
 VALLEY = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../data/valley")
@@ -88,14 +88,11 @@ def band_of(path, number, *window):
     return band.ReadAsArray(*window), band.GetNoDataValue()
 
 
-class Report(KeptRuns, RunCase):
+class Report(OneThread, KeptRuns, RunCase):
     """A run with screens, hazard with objects, and a barrier."""
 
-    def run_scenario(self, out, *more):  # the page hangs on no thread, and one costs least
-        return super().run_scenario(out, "--threads", "1", *more)
-
     def results(self, hazard=True, out="out"):
-        self.keep_scenario(out, "--threads", "1")
+        self.keep_scenario(out)
         if hazard:
             write_features(self.path("houses.gpkg"), "houses",
                            [(box(100, 100, 12, 9), ["mill"]), (box(205, 120, 12, 9), ["school"])], [("name", ogr.OFTString)])
@@ -132,7 +129,7 @@ class Content(Report):
         write_features(self.path("zones.gpkg"), "zones", [(box(0, 100, 300, 60), ["road"])], [("zone", ogr.OFTString)])
         self.write("s.toml", self.read_text("s.toml") + '[ground]\nfile = "zones.gpkg"\n[ground.zones.road]\npreset = "forest-road-3d"\n')
         self.results(hazard=False)
-        self.run_well("run", self.path("out/scenario.toml"), "-o", self.path("again"), "-q", "--threads", "1")
+        self.run_well("run", self.path("out/scenario.toml"), "-o", self.path("again"), "-q")
         for out in ("out", "again"):
             self.assertIn("upper-talus-3d, forest-road-3d", self.page(out=out).text)
 
@@ -606,21 +603,19 @@ class Browser(Report):
     def test_opens_as_it_is_and_prints(self):
         self.results()
         page = self.page()
-        dom = self.chromium("--dump-dom", "--screenshot=" + self.path("page.png"),
-                            "--print-to-pdf=" + self.path("page.pdf"), "file://" + self.path("out/report.html"))
+        dom = self.chromium("--dump-dom", "file://" + self.path("out/report.html"))
         self.assertEqual(dom.count("<option"), 2 * len(page.maps()))  # the script ran under the policy of the page
+        self.chromium("--screenshot=" + self.path("page.png"), "file://" + self.path("out/report.html"))
         picture = gdal.Open(self.path("page.png")).ReadAsArray()
         self.assertEqual(picture.shape[1:], (1600, 1200))
         red, green, blue = picture[:3].astype(int)
         self.assertGreater(len(np.unique((red * 256 + green) * 256 + blue)), 100)  # colours
-        with open(self.path("page.pdf"), "rb") as file:
-            pdf = file.read()
+        pdf = self.printed(self.path("out/report.html"))
         self.assertTrue(pdf.startswith(b"%PDF"))
         self.assertGreater(len(pdf), 50_000)
 
     def test_two_low_maps_share_a_printed_page(self):
-        self.run_well("run", os.path.join(VALLEY, "scenario.toml"), "--trajectories", "2", "-q", "--threads", "1",
-                      "-o", self.path("valley"))
+        self.run_well("run", os.path.join(VALLEY, "scenario.toml"), "--trajectories", "2", "-q", "-o", self.path("valley"))
         self.run_well("report", self.path("valley"))
         html = self.read_text("valley/report.html")
         maps = html.count("<figure class='map low'>")

@@ -179,6 +179,16 @@ class Case(unittest.TestCase):
         self.assertEqual(sorted(os.listdir(self.folder)), sorted(before))
 
 
+class OneThread:
+    """Before Case or RunCase: runs, hazard maps and merges by one thread, which costs least, where a test does not say
+    how many. That the results do not hang on their number is tested by tests that say it."""
+
+    def run_well(self, *arguments, **options):
+        if arguments[0] in ("run", "hazard", "merge") and "--threads" not in arguments:
+            arguments = (*arguments, "--threads", "1")
+        return super().run_well(*arguments, **options)
+
+
 class KeptRuns:
     """Before Case or RunCase: a result that several tests of a module begin with is made once, and each has a copy that
     it may change. The folders of the tests have one name, one after the other: results hold the paths of inputs."""
