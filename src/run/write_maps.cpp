@@ -31,12 +31,13 @@ struct Part {
   std::uint64_t square;
 };
 
-constexpr std::uint64_t kTilesOfSquare = 16;  // their records are loaded once for all maps
+constexpr std::uint64_t kTilesOfSquare = 16;  // a power of 4; at most half a gigabyte of records
 
 }  // namespace
 
 // The parts of all maps are one list, so that no thread waits at the end of a map. It goes square by square, so that
-// all maps need the same records one after the other; in a square map by map, so that few overviews grow at once.
+// all maps need the same records one after the other. In a square it goes map by map: overviews that lie within the
+// square grow for one map at a time.
 void write_maps(const std::vector<Map>& maps, const io::MapTarget& target, int threads) {
   std::vector<std::unique_ptr<io::MapFile>> files;
   std::vector<Part> parts;

@@ -270,7 +270,7 @@ class Limits(Faults):
         """From too little to start to nearly enough: one error, no crash, nothing left."""
         before = os.listdir(self.folder)
         failed = 0
-        for megabytes in (100, 150, 200, 225, 300, 400):  # from 250 on PROJ searches for seconds before it fails
+        for megabytes in (100, 150, 200, 225, 300, 400):  # between 225 and 400 PROJ searches for seconds before it fails
             size = megabytes * 1_000_000
             done = self.call(*self.begin, "-q", "--threads", "2", preexec_fn=limit(resource.RLIMIT_AS, size))
             if done.returncode == 0:

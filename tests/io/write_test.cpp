@@ -231,6 +231,16 @@ TEST_F(Write, PartsInAnyOrderGiveTheSameBytes) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
+/// Bits of row and column in turn, by hand: 5 x 3 tiles, of which two squares of 4 x 4 are cut.
+TEST_F(Write, PartsLieSquareAfterSquare) {
+  const Map map = map_of(Map::Kind::Quantity, {{"mean", "kJ"}});
+  const MapTarget to = target(kMapColumns, kMapRows);
+  MapFile file(map, to);
+  std::vector<std::uint64_t> places;
+  for (std::size_t i = 0; i < file.parts(); ++i) places.push_back(file.place_of(i));
+  EXPECT_EQ(places, (std::vector<std::uint64_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 13, 16, 18, 24}));
+}
+
 TEST_F(Write, AMapThatIsNotFinishedLeavesNothing) {
   const Map map = quiet_map(true);
   const MapTarget to = target(kMapColumns, kMapRows);

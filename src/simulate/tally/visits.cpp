@@ -22,7 +22,7 @@ LengthRules length_rules(const OutputSettings& output) {
 }
 
 Visit& VisitList::append(const Visit& visit, std::vector<Piece>& spare) {
-  if (used_ == kPiece) {
+  if (empty() || used_ == kPiece) {
     if (spare.empty()) spare.push_back(std::make_unique_for_overwrite<Visit[]>(kPiece));
     pieces_.push_back(std::move(spare.back()));
     spare.pop_back();
@@ -34,7 +34,6 @@ Visit& VisitList::append(const Visit& visit, std::vector<Piece>& spare) {
 void VisitList::clear(std::vector<Piece>& spare) {
   std::ranges::move(pieces_, std::back_inserter(spare));
   pieces_.clear();
-  used_ = kPiece;
 }
 
 VisitBatch::VisitBatch(const Grid& grid, LengthRules lengths)
@@ -255,9 +254,10 @@ Visit& VisitBatch::new_visit(int column, int row) {
   }
   const auto cell = static_cast<std::uint16_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
   if (keep_total_) region_->totals.push_back(0.0F);
-  ++size_;
   const auto trajectory = static_cast<std::uint16_t>(trajectories_.size() - 1);
+  size_ -= region_->visits.room();
   visit_ = &region_->visits.append({{}, cell, trajectory, 0, 0, 0, 0, 0, 0, 0.0F}, spare_);
+  size_ += region_->visits.room();
   return *visit_;
 }
 

@@ -40,19 +40,22 @@ LengthRules length_rules(const OutputSettings& output);
 
 struct Moment;
 
-/// Visits in the order in which they came, in pieces of memory of one size: growing moves no visit, and what one list
-/// gives back another takes. Vectors would leave holes of all sizes between the records of the tally.
+/// Visits in the order in which they came, in pieces of memory of one size, which lists take from and give back to a
+/// common store. So no visit is moved when a list grows; vectors would leave holes of all sizes between the records of
+/// the tally.
 class VisitList {
  public:
   using Piece = std::unique_ptr<Visit[]>;
+  static constexpr std::size_t kPiece = 64;  // visits
 
   /// @param spare  pieces that no list uses; if there is none, one is made
   Visit& append(const Visit& visit, std::vector<Piece>& spare);
   /// Gives all pieces back.
   void clear(std::vector<Piece>& spare);
 
-  std::size_t size() const { return pieces_.size() * kPiece + used_ - kPiece; }
+  std::size_t size() const { return empty() ? 0 : (pieces_.size() - 1) * kPiece + used_; }
   bool empty() const { return pieces_.empty(); }
+  std::size_t room() const { return pieces_.size() * kPiece; }  ///< visits that its memory holds
   template <class Action>
   void for_each(const Action& action) const {
     for (const Piece& piece : pieces_)
@@ -60,9 +63,8 @@ class VisitList {
   }
 
  private:
-  static constexpr std::size_t kPiece = 256;
   std::vector<Piece> pieces_;
-  std::size_t used_ = kPiece;  // of the last piece
+  std::size_t used_ = 0;  // of the last piece, if there is one
 };
 
 /// The visits of a batch to one region of the grid.

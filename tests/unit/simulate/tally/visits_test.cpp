@@ -273,6 +273,33 @@ TEST(VisitBatch, NoTerrainNoVisit) {
   }
 }
 
+TEST(VisitList, KeepsTheOrderAndUsesPiecesAgain) {
+  std::vector<VisitList::Piece> spare;
+  VisitList list, other;
+  const auto append_to = [&](VisitList& to, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      Visit visit{};
+      visit.height = static_cast<float>(i);
+      to.append(visit, spare);
+    }
+  };
+  for (const std::size_t count :
+       {std::size_t{0}, std::size_t{1}, VisitList::kPiece, VisitList::kPiece + 1, 3 * VisitList::kPiece}) {
+    append_to(list, count);
+    EXPECT_EQ(list.size(), count);
+    EXPECT_EQ(list.empty(), count == 0);
+    EXPECT_EQ(list.room(), (count + VisitList::kPiece - 1) / VisitList::kPiece * VisitList::kPiece);
+    std::size_t next = 0;
+    list.for_each([&](const Visit& visit) { EXPECT_EQ(visit.height, static_cast<float>(next++)); });
+    EXPECT_EQ(next, count);
+    list.clear(spare);
+    EXPECT_TRUE(list.empty());
+  }
+  EXPECT_EQ(spare.size(), 3U);  // the most that it had at once
+  append_to(other, 2 * VisitList::kPiece);
+  EXPECT_EQ(spare.size(), 1U);
+}
+
 TEST(VisitBatch, FillsUpAndClears) {
   const Grid grid = test::grid_of(8, 8, 1.0, 1.0);
   VisitBatch batch(grid);
