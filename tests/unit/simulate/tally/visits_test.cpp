@@ -29,9 +29,8 @@ struct Seen {
 std::map<Cell, Seen> seen(const VisitBatch& batch, const Grid& grid) {
   const int across = (grid.columns + kRegionSide - 1) / kRegionSide;
   std::map<Cell, Seen> cells;
-  for (const auto& [index, visits_of_region] : batch.regions())
-    visits_of_region.visits.for_each([&](const Visit& visit) {
-      const int region = static_cast<int>(index);
+  for (const auto& of_region : batch.regions())
+    of_region.second.visits.for_each([&, region = static_cast<int>(of_region.first)](const Visit& visit) {
       Seen& cell = cells[{region % across * kRegionSide + visit.cell % kRegionSide,
                           region / across * kRegionSide + visit.cell / kRegionSide}];
       cell.speed_squared = std::max<double>(cell.speed_squared, visit.speed_squared);
