@@ -83,11 +83,10 @@ void TilePyramid<T>::add_parts(const Place& place) {
 template <class T>
 std::uint64_t TilePyramid<T>::place_of(std::size_t i) const {
   const Place& place = parts_[i].place;
+  const std::uint64_t x = std::uint64_t(place.x) << place.level, y = std::uint64_t(place.y) << place.level;
   std::uint64_t along = 0;
-  for (int bit = 0; bit < 31 - place.level; ++bit) {  // the bits of row and column in turn
-    along |= (static_cast<std::uint64_t>(place.x) >> bit & 1U) << 2 * (bit + place.level);
-    along |= (static_cast<std::uint64_t>(place.y) >> bit & 1U) << (2 * (bit + place.level) + 1);
-  }
+  for (int bit = 0; bit < 31; ++bit)  // the bits of row and column in turn
+    along |= (x >> bit & 1U) << 2 * bit | (y >> bit & 1U) << (2 * bit + 1);
   return along;
 }
 

@@ -196,7 +196,7 @@ struct Tally::Group {
   std::size_t record;
 };
 
-/// What scoring one region after the other needs. Buffers that keep their memory.
+/// Buffers for the visits of one region. The regions of a batch use them in turn, so that memory is allocated once.
 struct Tally::Work {
   std::vector<Visit> sorted;  // by cell; those of one cell keep their order
   std::vector<float> totals;  // of the sorted visits

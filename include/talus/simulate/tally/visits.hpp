@@ -144,7 +144,7 @@ class VisitBatch {
   std::vector<VisitList::Piece> spare_;
   std::vector<Trajectory> trajectories_;
   AnnualShare annual_share_;
-  std::size_t size_ = 0;
+  std::size_t size_ = 0;  // memory of the lists, in visits: whole pieces
   bool pieces_ = false;
   bool keep_total_ = false;
   float rotation_ = 0.0F;       // twice the energy of the current rotation per mass [m^2/s^2]
