@@ -4,9 +4,9 @@
 
 #include <cerrno>
 #include <stdexcept>
-#include <system_error>
 #include <vector>
 
+#include "io/files/posix_bytes.hpp"
 #include "io/gdal/cause_of_failure.hpp"
 #include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
@@ -32,7 +32,7 @@ std::string CheckpointFileWriter::finish() {
 
 void CheckpointFileWriter::fail() const {
   throw std::runtime_error(path_.filename().string() + ": cannot be written: " +
-                           io::cause_of_failure(path_.parent_path(), std::system_category().message(errno)));
+                           io::cause_of_failure(path_.parent_path(), io::system_text(errno)));
 }
 
 CheckpointFileReader::CheckpointFileReader(const std::filesystem::path& file, const std::string& sha256)

@@ -13,6 +13,7 @@
 #include "folder_lock.hpp"
 #include "input_files.hpp"
 #include "own_files.hpp"
+#include "posix_bytes.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
@@ -82,7 +83,7 @@ void make_hidden(StagedPath& staged) {
   const std::string parent = staged.path().parent_path().string();
   const std::error_code error = staged.make_folder();
   if (!error) return;
-  if (error == std::errc::no_space_on_device) throw std::runtime_error(parent + ": " + error.message());
+  if (error == std::errc::no_space_on_device) throw std::runtime_error(parent + ": " + system_text(error.value()));
   if (error == std::errc::file_exists)
     throw std::runtime_error(parent + ": too many temporary folders of talus; remove " +
                              staged.hidden().filename().string() + "*");
@@ -246,7 +247,7 @@ void write_text(const fs::path& file, std::string_view text, const std::string& 
   std::error_code ignored;
   fs::remove(file, ignored);
   throw std::runtime_error((name.empty() ? file.filename().string() : name) +
-                           ": cannot be written: " + std::system_category().message(cause));
+                           ": cannot be written: " + system_text(cause));
 }
 
 void replace_text(const fs::path& file, std::string_view text) {
@@ -254,7 +255,7 @@ void replace_text(const fs::path& file, std::string_view text) {
   StagedPath staged(StagedPath::Kind::File, file, file.extension().string());
   write_text(staged.hidden(), text, name);
   if (const std::error_code error = staged.commit())
-    throw std::runtime_error(name + ": cannot be written: " + error.message());
+    throw std::runtime_error(name + ": cannot be written: " + system_text(error.value()));
 }
 
 std::vector<std::string> files_in(const fs::path& folder) {

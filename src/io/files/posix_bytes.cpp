@@ -9,11 +9,15 @@
 #include <system_error>
 
 namespace talus::io {
+
+std::string system_text(int cause) {
+  return cause == ENOSPC ? "the disk is full" : std::system_category().message(cause);
+}
+
 namespace {
 
 [[noreturn]] void fail(const char* what, int cause) {
-  throw std::runtime_error(std::string(what) + ": " +
-                           (cause == ENOSPC ? "the disk is full" : std::system_category().message(cause)));
+  throw std::runtime_error(std::string(what) + ": " + system_text(cause));
 }
 
 /// Calls pread or pwrite until all bytes are moved.

@@ -3,8 +3,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace talus::io {
+
+/// What the system says of a cause (an `errno`); a full disk is called one.
+std::string system_text(int cause);
 
 /// Creates a file for writing and reading, or empties it. @return its descriptor. Throws std::runtime_error
 int create_file(const std::filesystem::path& path);

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <stdexcept>
 
+#include "posix_bytes.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/hidden_name.hpp"
 
@@ -71,7 +72,7 @@ void synchronise(const fs::path& path) {
   close(file);
   if (result != 0 && cause != EINVAL && cause != ENOTSUP)
     throw std::runtime_error(final_name(path.filename().string()) +
-                             ": cannot be written: " + std::system_category().message(cause));
+                             ": cannot be written: " + system_text(cause));
 }
 
 void synchronise_all(const fs::path& path) {

@@ -7,6 +7,7 @@
 #include "barrier_stretches.hpp"
 #include "io/files/json.hpp"
 #include "io/files/own_files.hpp"
+#include "io/files/posix_bytes.hpp"
 #include "io/results/frequency_record.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/vector.hpp"
@@ -169,7 +170,7 @@ class NewDesign {
     for (StagedPath& file : files_) {
       remove_beside(file.path());
       if (const std::error_code error = file.commit())
-        throw std::runtime_error(file.path().filename().string() + ": cannot be written: " + error.message());
+        throw std::runtime_error(file.path().filename().string() + ": cannot be written: " + system_text(error.value()));
     }
   }
 

@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
-#include <system_error>
 
 #include "io/files/compression.hpp"
 #include "io/files/posix_bytes.hpp"
@@ -73,7 +72,7 @@ void HazardWriter::finish() {
   const int cause = errno;
   std::error_code ignored;
   std::filesystem::remove(file_, ignored);
-  fail("cannot be written: " + std::system_category().message(cause));
+  fail("cannot be written: " + system_text(cause));
 }
 
 void HazardWriter::fail(const std::string& cause) const {

@@ -2,8 +2,8 @@
 
 #include <cerrno>
 #include <stdexcept>
-#include <system_error>
 
+#include "io/files/posix_bytes.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/base/text.hpp"
 
@@ -45,7 +45,7 @@ void CrossingsWriter::put(const std::string& text) {
 }
 
 void CrossingsWriter::fail() const {
-  throw std::runtime_error(name_ + ": cannot be written: " + std::system_category().message(errno));
+  throw std::runtime_error(name_ + ": cannot be written: " + system_text(errno));
 }
 
 }  // namespace talus::io

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "io/files/compression.hpp"
+#include "io/files/posix_bytes.hpp"
 #include "io/gdal/geotiff_tags.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/files/output_folder.hpp"
@@ -127,7 +128,7 @@ bool MapFile::finish() {
   if (!whole) return false;
   const std::error_code error = staged.commit();
   named([&] {
-    if (error) throw std::runtime_error("cannot be given its name: " + error.message());
+    if (error) throw std::runtime_error("cannot be given its name: " + system_text(error.value()));
   });
   return true;
 }
