@@ -139,10 +139,19 @@ std::string as_decimal(std::string& text) {
   return other_base ? "Value " + text + " must be a decimal number" : "";
 }
 
-void take_decimal_numbers(CLI::App& app) {
+/// Cuts spaces around an item of a list ("theta_scale, En50").
+std::string without_spaces(std::string& item) {
+  item = CLI::detail::trim_copy(item);
+  return {};
+}
+
+/// Puts given texts into the form that the options read, before their other checks.
+void take_texts_as_meant(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands(nullptr))
-    for (CLI::Option* option : command->get_options())
-      if (is_number(*option)) option->transform(CLI::Validator(as_decimal, ""));  // before its other checks
+    for (CLI::Option* option : command->get_options()) {
+      if (is_number(*option)) option->transform(CLI::Validator(as_decimal, ""));
+      if (option->get_delimiter() != '\0') option->transform(CLI::Validator(without_spaces, ""));
+    }
 }
 
 /// Throws InputError for a list with an empty item (30,,300), which CLI11 leaves out unnoticed.
@@ -204,7 +213,7 @@ Action understood(int argc, char** argv, const std::vector<AddCommand>& commands
   for (const AddCommand& add : commands) add(app, action);
   for (CLI::App* command : app.get_subcommands(nullptr))
     if (command->get_name() != "presets") add_access(*command);
-  take_decimal_numbers(app);
+  take_texts_as_meant(app);
   add_help(app, action);
   if (argc < 2) return help_of(app);
   try {

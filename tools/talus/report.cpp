@@ -22,10 +22,10 @@ int report(Options options) {
   const fs::path file = options.out.empty() ? fs::path(options.folder) / "report.html" : fs::path(options.out);
   if (file.extension() != ".html")
     throw talus::InputError("-o: '" + options.out + "' must end in .html (the report is a page)");
-  talus::io::check_page_name(file, options.overwrite, options.folder);
+  const talus::io::RunPageFile out(file, options.overwrite, options.folder);
   const std::string page = talus::io::run_page(options.request);
   catch_signals();  // from here on: the whole page
-  talus::io::write_run_page(file, page);
+  out.write(page);
   if (!options.quiet)
     say("", "the report is in " + fs::absolute(file).lexically_normal().string() + " (" +
                 talus::with_digits(1e-6 * static_cast<double>(page.size()), 2) +

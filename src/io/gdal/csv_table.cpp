@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 
 #include "regular_file.hpp"
 #include "talus/base/error.hpp"
@@ -122,12 +123,17 @@ void CsvTable::read_header(std::vector<std::string> columns, const std::vector<s
   if (columns_.size() == 1 && columns_[0].find_first_of(";\t") != std::string::npos)
     throw InputError(path_ + ":1: has one column, '" + columns_[0] +
                      "': cells must be separated by commas: save it as CSV (comma delimited)");
-  for (auto column = columns_.begin(); column != columns_.end(); ++column) {
-    if (!known.empty() && std::find(known.begin(), known.end(), *column) == known.end())
-      throw InputError(path_ + ":1: unknown column '" + *column + "'" + known_names(*column, known));
+  std::vector<std::string> unknown;
+  std::ranges::copy_if(columns_, std::back_inserter(unknown), [&](const std::string& column) {
+    return !known.empty() && std::ranges::find(known, column) == known.end();
+  });
+  if (!unknown.empty())
+    throw InputError(path_ + ":1: unknown column" +
+                     (unknown.size() == 1 ? " '" + unknown.front() + "'" : "s: " + joined(unknown)) +
+                     known_names(unknown.front(), known));
+  for (auto column = columns_.begin(); column != columns_.end(); ++column)
     if (std::find(columns_.begin(), column, *column) != column)
       throw InputError(path_ + ":1: column '" + *column + "' is there twice, must be there once");
-  }
   for (const std::string& column : required)
     if (!has(column)) throw InputError(path_ + ":1: has no column '" + column + "', must have " + joined(required));
 }

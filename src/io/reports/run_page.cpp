@@ -210,7 +210,7 @@ std::string run_page(const RunPageRequest& request) {
   return page_of(frame, body);
 }
 
-void check_page_name(const fs::path& file, bool overwrite, const fs::path& folder) {
+RunPageFile::RunPageFile(const fs::path& file, bool overwrite, const fs::path& folder) : file_(file) {
   require_results(folder);
   refuse_dangling_link(file);
   std::error_code none;
@@ -221,13 +221,12 @@ void check_page_name(const fs::path& file, bool overwrite, const fs::path& folde
       throw InputError(file.string() +
                        ": is there and no page of talus report, so it is not replaced; give another name by -o");
   }
-  if (const fs::path parent = file.parent_path(); !parent.empty() && !fs::is_directory(parent, none))
-    throw InputError(parent.string() + ": is no folder, must be one; make it first, or give another -o");
+  parents_.make(fs::absolute(file).parent_path());
   refuse_unwritable(file.parent_path());
 }
 
-void write_run_page(const fs::path& file, const std::string& page) {
-  replace_text(file, page);
+void RunPageFile::write(const std::string& page) const {
+  replace_text(file_, page);
 }
 
 }  // namespace talus::io

@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <string>
 
+#include "talus/io/files/made_folders.hpp"
+
 namespace talus::io {
 
 /// What is asked of a page on a run.
@@ -15,11 +17,20 @@ struct RunPageRequest {
 /// run, or if a file in it cannot be understood.
 std::string run_page(const RunPageRequest& request);
 
-/// Throws InputError if a page cannot get this name: it is taken (unless `overwrite` is given and the file is a page of
-/// `talus report`), its folder is not there, or `folder` has no results.
-void check_page_name(const std::filesystem::path& file, bool overwrite, const std::filesystem::path& folder);
+/// The file of a page. Folders that are made for it are removed again if no page is written.
+class RunPageFile {
+ public:
+  /// @param overwrite  a file of this name may be replaced, if it is a page of `talus report`
+  /// @param folder     the results that the page shows
+  /// Throws InputError if the name is taken, if its folder cannot be made or written, or if `folder` has no results.
+  RunPageFile(const std::filesystem::path& file, bool overwrite, const std::filesystem::path& folder);
 
-/// Writes a page; it has its name when it is complete. Throws std::runtime_error.
-void write_run_page(const std::filesystem::path& file, const std::string& page);
+  /// Writes the page; it has its name when it is complete. Throws std::runtime_error.
+  void write(const std::string& page) const;
+
+ private:
+  MadeFolders parents_;
+  std::filesystem::path file_;
+};
 
 }  // namespace talus::io
