@@ -31,8 +31,8 @@ std::string CheckpointFileWriter::finish() {
 }
 
 void CheckpointFileWriter::fail() const {
-  throw std::runtime_error(path_.filename().string() + ": cannot be written: " +
-                           io::cause_of_failure(path_.parent_path(), io::system_text(errno)));
+  throw std::runtime_error(path_.filename().string() +
+                           ": cannot be written: " + io::cause_of_failure(path_.parent_path(), io::system_text(errno)));
 }
 
 CheckpointFileReader::CheckpointFileReader(const std::filesystem::path& file, const std::string& sha256)

@@ -270,6 +270,8 @@ TEST_F(Campaigns, FaultsOfBlocks) {
   refused("", {"blocks.csv:3: holds a zero byte (NUL)", "UTF-8"});
   with("id,x,y,release_height_m,mass\n");
   refused("", {"blocks.csv:1", "unknown column 'mass'", "mass_kg"});
+  with("id,x,y,release_height_m,mass,Laenge,mass_kg\n");
+  refused("", {"blocks.csv:1", "unknown columns: mass, Laenge", "mass_kg"});
   with("id,x,y,release_height_m\n");
   refused("", {"blocks.csv:1", "no column 'mass_kg'"});
   with(head);

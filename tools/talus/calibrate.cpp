@@ -47,6 +47,7 @@ void score_both(const talus::Campaign& campaign, talus::io::Calibration& c) {
     c.errors.push_back(talus::io::compared(campaign, talus::io::scored(name, campaign, before, rows),
                                            talus::io::scored(name, campaign, after, rows)));
   }
+  c.errors.front().after.fitted = c.free.size();
   c.comparison = talus::compare(campaign, after, all);
 }
 
@@ -61,9 +62,9 @@ void print_summary(const talus::io::Calibration& c, const std::string& folder) {
     print("zone %s: too few simulated paths touch it; not fitted\n", zone.c_str());
   for (const talus::io::BeforeAfter& e : c.errors) {
     if (std::isnan(e.after.score.total)) continue;  // no group has five rows: the report says so
-    print("error, %s rows (%zu blocks): %.3f before, %.3f after (lower by %.1f %%, 95 %%: %.1f to %.1f %%)\n",
+    print("error, %s rows (%zu blocks): %.3f before, %.3f after (lower by %s)\n",
           talus::io::rows_in_words(e.after.rows).c_str(), e.after.blocks, e.before.score.total, e.after.score.total,
-          100.0 * e.reduction.share, 100.0 * e.reduction.interval.low, 100.0 * e.reduction.interval.high);
+          talus::io::gain_of_fit(e).c_str());
     print_text(talus::io::judgement_lines(e.after));
   }
   if (c.fit.score.cut_short > 0.0)
@@ -98,7 +99,10 @@ int calibrate(const Options& options) {
     if (c.uncertainty.at_bound[i])
       warn(options, c, talus::io::bound_warning(c.free[i].key, c.uncertainty.intervals[i]));
   score_both(campaign, c);
-  for (const talus::io::BeforeAfter& e : c.errors) warn_of_scores(options, c, e.after);
+  for (const talus::io::BeforeAfter& e : c.errors) {
+    for (const std::string& warning : talus::io::unscored_warnings(e.before)) warn(options, c, "start: " + warning);
+    warn_of_scores(options, c, e.after);
+  }
 
   talus::io::write_text(folder.temporary() / "calibration.json", talus::io::calibration_json(c));
   talus::io::write_text(folder.temporary() / "report.md", talus::io::calibration_report(c));

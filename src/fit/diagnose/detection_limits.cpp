@@ -1,6 +1,7 @@
 #include "talus/fit/diagnose/detection_limits.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/families.hpp"
@@ -38,11 +39,17 @@ std::vector<DetectionLimit> detection_limits(const Campaign& campaign, const Axi
                                              std::span<const Candidate> candidates, const DiagnosisRules& rules) {
   std::vector<DetectionLimit> limits;
   for (const EffectVerdict& effect : test.effects) {
-    const auto best = std::ranges::min_element(
-        effect.sharpest, {}, [](const auto& of_parameter) { return of_parameter.second.standard_error; });
-    if (best == effect.sharpest.end() || best->second.members.empty()) continue;
-    const Candidate candidate = merged_candidate(campaign, axis, candidates, best->second.members, rules);
-    limits.push_back(limit_of(effect.effect, candidate, best->second, rules));
+    std::vector<std::pair<double, DetectionLimit>> found;  // by parameter, with its standard error
+    for (const auto& [key, sharpest] : effect.sharpest)
+      if (!sharpest.members.empty())
+        found.emplace_back(
+            sharpest.standard_error,
+            limit_of(effect.effect, merged_candidate(campaign, axis, candidates, sharpest.members, rules), sharpest,
+                     rules));
+    const auto best = std::ranges::min_element(found, {}, [](const auto& of_parameter) {
+      return std::pair(std::isnan(of_parameter.second.amount), of_parameter.first);
+    });
+    if (best != found.end()) limits.push_back(best->second);
   }
   return limits;
 }

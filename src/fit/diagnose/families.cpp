@@ -15,6 +15,8 @@ namespace {
 constexpr const char *kProperty = "block property", *kPlace = "place", *kDay = "day", *kInstrument = "instrument",
                      *kDispersion = "dispersion";
 
+constexpr double kLeastRare = 0.05;  // a family whose smallest possible p is larger can name nothing
+
 std::string count_word(std::size_t n) {
   static constexpr std::array<const char*, 6> kWords{"no", "one", "two", "three", "four", "five"};
   return n < kWords.size() ? kWords[n] : std::to_string(n);
@@ -63,8 +65,13 @@ FamilyTest block_property(std::span<const BlockNumbers> sites, const FamilyOptio
                                                               : "two rocks that can be compared are needed";
     return family;
   }
-  family.p_value = test.regression.permuted.p_value;
-  family.note += (family.may_name ? "" : "; ") + permutations_note(test.regression.permuted, units_word(test));
+  const PermutationTest& permuted = test.regression.permuted;
+  family.p_value = permuted.p_value;
+  family.note += (family.may_name ? "" : "; ") + permutations_note(permuted, units_word(test));
+  if (permuted.exact && kLeastRare * static_cast<double>(permuted.arrangements) < 1.0) {
+    family.may_name = false;
+    family.note += ", of which none could be rare: a property of the block cannot be named from them";
+  }
   for (std::size_t i = 0; i < test.slopes.size(); ++i)
     if (!std::isnan(test.slopes[i].correlation))
       family.parts.push_back(

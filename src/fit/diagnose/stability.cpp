@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace talus {
 namespace {
@@ -12,18 +13,31 @@ void widen(Interval& range, double p) {
   range.high = std::isnan(range.high) ? p : std::max(range.high, p);
 }
 
+/// The different texts of the fits, the most frequent first; of equally frequent ones that of the earlier fit first.
+std::vector<std::string> by_frequency(const Stability& stability, std::string BaseFitVerdict::*text) {
+  std::vector<std::string> names;
+  for (const BaseFitVerdict& fit : stability.fits)
+    if (std::ranges::find(names, fit.*text) == names.end()) names.push_back(fit.*text);
+  std::ranges::stable_sort(names, std::greater{},
+                           [&](const std::string& name) { return std::ranges::count(stability.fits, name, text); });
+  return names;
+}
+
 }  // namespace
 
 std::vector<std::string> verdicts_of(const Stability& stability) {
-  std::vector<std::string> names;
-  for (const BaseFitVerdict& fit : stability.fits)
-    if (std::ranges::find(names, fit.effect) == names.end()) names.push_back(fit.effect);
-  const auto count = [&](const std::string& name) {
-    return std::ranges::count(stability.fits, name, &BaseFitVerdict::effect);
-  };
-  std::stable_sort(names.begin(), names.end(),
-                   [&](const std::string& a, const std::string& b) { return count(a) > count(b); });
-  return names;
+  return by_frequency(stability, &BaseFitVerdict::effect);
+}
+
+std::string places_text(const Stability& stability) {
+  const std::vector<std::string> places = by_frequency(stability, &BaseFitVerdict::where);
+  if (verdicts_of(stability).size() != 1 || places.size() < 2) return {};
+  std::string text;
+  for (const std::string& place : places)
+    text += (text.empty() ? "" : ", ") +
+            std::to_string(std::ranges::count(stability.fits, place, &BaseFitVerdict::where)) + " of " +
+            std::to_string(stability.fits.size()) + " " + place;
+  return text;
 }
 
 std::string undecided_text(const Stability& stability) {

@@ -14,6 +14,12 @@
 namespace talus {
 namespace {
 
+namespace policies = boost::math::policies;
+/// Quantile p is the smallest count that no larger share than 1 - p of all counts exceeds.
+using Binomial =
+    boost::math::binomial_distribution<double,
+                                       policies::policy<policies::discrete_quantile<policies::integer_round_up>>>;
+
 /// Ranks of one observable.
 class Ranks {
  public:
@@ -42,13 +48,13 @@ class Ranks {
   void add_to(std::vector<Coverage>& list) {
     if (coverage_.rows < kFewestRows) return;
     for (std::size_t i = 0; i < kCoverageShares.size(); ++i) test(coverage_.below[i], kCoverageShares[i]);
-    coverage_.expected_in_class = middle_of(boost::math::binomial(coverage_.rows, 1.0 / kRankClasses));
+    coverage_.expected_in_class = middle_of(Binomial(coverage_.rows, 1.0 / kRankClasses));
     list.push_back(std::move(coverage_));
   }
 
  private:
   void test(ShareBelow& below, double share) const {
-    const boost::math::binomial right(coverage_.rows, share);
+    const Binomial right(coverage_.rows, share);
     const double at_most = boost::math::cdf(right, below.count);
     const double at_least =
         below.count == 0 ? 1.0 : boost::math::cdf(boost::math::complement(right, below.count - 1.0));
@@ -56,7 +62,7 @@ class Ranks {
     below.expected = middle_of(right);
   }
 
-  static Interval middle_of(const boost::math::binomial& counts) {
+  static Interval middle_of(const Binomial& counts) {
     return {boost::math::quantile(counts, kTail), boost::math::quantile(counts, 1.0 - kTail)};
   }
 
@@ -106,7 +112,7 @@ std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRu
                                std::uint64_t seed) {
   std::vector<Coverage> list;
   Ranks runout("runout", seed);
-  const bool left_are_farther = all_at_rest(campaign, std::vector<bool>(campaign.blocks.size(), true));
+  const bool left_are_farther = all_at_rest(campaign, ask);
   for (std::size_t b = 0; b < campaign.blocks.size(); ++b)
     if (ask[b])
       runout.add(campaign.blocks[b], runout_of(campaign, campaign.blocks[b]),
@@ -116,6 +122,29 @@ std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRu
   for (std::size_t s = 0; s < campaign.screens.size(); ++s) add_screen(list, campaign, runs, ask, s, seed);
   correct(list);
   return list;
+}
+
+LeavingTest leaving_test(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
+  LeavingTest out;
+  if (campaign.deposits != nullptr) return out;
+  std::vector<double> law{1.0};  // probability that no block leaves, that one does, ...
+  for (std::size_t b = 0; b < campaign.blocks.size(); ++b) {
+    if (!ask[b] || runs[b].trials == 0) continue;
+    const double left = runs[b].ends[static_cast<std::size_t>(End::Left)], trials = runs[b].trials;
+    const bool missing = !campaign.blocks[b].stop;
+    ++out.blocks;
+    out.missing += missing ? 1 : 0;
+    out.expected += left / trials;
+    const double p = (left + (missing ? 1.0 : 0.0)) / (trials + 1.0);
+    law.push_back(0.0);
+    for (std::size_t n = law.size() - 1; n > 0; --n) law[n] = law[n] * (1.0 - p) + law[n - 1] * p;
+    law[0] *= 1.0 - p;
+  }
+  if (out.blocks < kFewestRows) return out;
+  out.p_value = 0.0;
+  for (std::size_t n = 0; n <= out.missing; ++n) out.p_value += law[n];
+  out.p_value = std::min(1.0, out.p_value);
+  return out;
 }
 
 }  // namespace talus

@@ -157,7 +157,9 @@ std::vector<std::uint32_t> clusters_of(const Campaign& campaign) {
 UsedClusters used_clusters(const Score& score, std::span<const std::uint32_t> clusters) {
   const Clusters used(score, clusters);
   const auto given = static_cast<std::size_t>(std::ranges::count(used.given, true));
-  UsedClusters out{given > 0 ? given : used.count, given > 0, {}};
+  std::set<std::uint32_t> blocks;
+  for (const RowScore& row : score.rows) blocks.insert(row.block);
+  UsedClusters out{given > 0 ? given : used.count, blocks.size(), given > 0, {}};
   for (std::size_t g = 0; given > 0 && g < score.groups.size(); ++g)
     if (!used.of_group[g].empty() && !used.given[used.of_group[g].front()])
       out.by_block.push_back(score.groups[g].name);

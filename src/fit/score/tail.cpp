@@ -54,8 +54,6 @@ Score scored(const Campaign& campaign, std::span<const BlockRuns> runs, const st
     const bool unseen = !runs.empty() && values.size() < kFewestSimulated;
     if (unseen && campaign.deposits != nullptr)
       runouts_anywhere(campaign, block, values);
-    else if (unseen && folds.empty())
-      values = fitting.values;
     else if (unseen)
       fitting.of_others(b, values, folds);
     const double score = fair_tail_crps(values, runout_of(campaign, block), begin) / spread;

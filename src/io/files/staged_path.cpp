@@ -71,8 +71,7 @@ void synchronise(const fs::path& path) {
   const int cause = errno;
   close(file);
   if (result != 0 && cause != EINVAL && cause != ENOTSUP)
-    throw std::runtime_error(final_name(path.filename().string()) +
-                             ": cannot be written: " + system_text(cause));
+    throw std::runtime_error(final_name(path.filename().string()) + ": cannot be written: " + system_text(cause));
 }
 
 void synchronise_all(const fs::path& path) {

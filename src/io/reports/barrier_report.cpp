@@ -170,7 +170,8 @@ class NewDesign {
     for (StagedPath& file : files_) {
       remove_beside(file.path());
       if (const std::error_code error = file.commit())
-        throw std::runtime_error(file.path().filename().string() + ": cannot be written: " + system_text(error.value()));
+        throw std::runtime_error(file.path().filename().string() +
+                                 ": cannot be written: " + system_text(error.value()));
     }
   }
 

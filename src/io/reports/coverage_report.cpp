@@ -1,6 +1,7 @@
 #include "coverage_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "svg.hpp"
 #include "talus/base/text.hpp"
@@ -79,6 +80,16 @@ std::string meaning(std::size_t i, bool too_many) {
 
 }  // namespace
 
+std::string leaving_sentence(const ScoredRows& scored) {
+  const LeavingTest& t = scored.leaving_trials;
+  if (std::isnan(t.p_value) || !(t.expected > 0.0) || t.missing == t.blocks) return {};
+  return rows_in_words(scored.rows) + " rows: by the model " + with_decimals(t.expected, 1) + " of " +
+         std::to_string(t.blocks) + " blocks leave the DEM, " +
+         (t.missing == 0 ? "none did" : "at most " + std::to_string(t.missing) + " did") + " (p " +
+         with_digits(t.p_value, 2) + ")" + (t.p_value < kWrongSpread ? " *" : "") +
+         (t.missing == 0 ? "" : "; run-outs are compared with trials that stay");
+}
+
 std::string coverage_lines(const ScoredRows& scored) {
   if (scored.coverage.empty()) return {};
   std::string text = rows_in_words(scored.rows) +
@@ -91,7 +102,8 @@ std::string coverage_lines(const ScoredRows& scored) {
       text += "  " + (i + 1 < cells.size() ? padded(cells[i], 18) : cells[i]);
     text += "\n";
   });
-  return text;
+  const std::string leaving = leaving_sentence(scored);
+  return text + leaving + (leaving.empty() ? "" : "\n");
 }
 
 std::string coverage_markdown(const std::vector<Coverage>& list) {
@@ -119,6 +131,13 @@ Markup coverage_html(const std::vector<Coverage>& list) {
     text += "</tr>\n";
   });
   return text + "</table>\n";
+}
+
+Json json_of(const LeavingTest& test) {
+  return {{"blocks", test.blocks},
+          {"without_place_of_rest", test.missing},
+          {"expected", json_of(test.expected)},
+          {"p_value", json_of(test.p_value)}};
 }
 
 Json json_of(const std::vector<Coverage>& list) {
@@ -189,6 +208,9 @@ std::vector<std::string> coverage_warnings(const ScoredRows& scored) {
                          whole_percent(kCoverageShares[i]) + " % should: " + meaning(i, too_many) + " (p " +
                          with_digits(c.below[i].corrected, 2) + " after correction)");
     }
+  if (scored.leaving_trials.p_value < kWrongSpread)
+    warnings.push_back(leaving_sentence(scored) +
+                       ": the ground lets blocks go too far, or the DEM is too small or has gaps there");
   return warnings;
 }
 

@@ -17,6 +17,9 @@ std::string coverage_markdown(const std::vector<Coverage>& list);
 Json json_of(const std::vector<Coverage>& list);
 /// The same as an HTML table.
 Markup coverage_html(const std::vector<Coverage>& list);
+/// How many blocks leave the DEM by the model, and how many can have. Empty where none does, or nobody can say.
+std::string leaving_sentence(const ScoredRows& scored);
+Json json_of(const LeavingTest& test);
 /// Warnings, one for each share that a right model does not give.
 std::vector<std::string> coverage_warnings(const ScoredRows& scored);
 /// Whether ranks were counted after a fit, so that there is a picture of them (`ranks_picture`).

@@ -1,5 +1,6 @@
 #include "diagnosis_summary.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "talus/base/text.hpp"
@@ -54,25 +55,33 @@ Markup missing(const DiagnosisRecord& record) {
     return "Something is missing that no effect of the library explains better than chance."_html;
   if (d.rounds.front().p_value <= record.options.level_of_round(0))
     return "Something may be missing: what is left is unlikely to be noise, but no effect of the library can be named for it."_html;
+  const auto tested = [](const FamilyTest& family) { return !std::isnan(family.p_value); };
+  if (std::ranges::none_of(d.rounds.front().families, tested))
+    return "It cannot be said: no family of effects could be tested."_html;
   return "Nothing that these data can show: what is left looks like noise."_html;
 }
 
-/// Whether other fits of the ground come to the same verdict.
+/// Whether other fits of the ground come to the same first verdict.
 Markup repeated(const Stability& stability) {
   if (stability.fits.size() < 2) return {};
   const Interval p = p_range_of(stability);
-  const std::string undecided = undecided_text(stability);
+  const std::string undecided = undecided_text(stability), places = places_text(stability);
   return " "_html + std::to_string(stability.fits.size()) + " independent fits of the ground: " +
-         (undecided.empty() ? "the same verdict from each"_html : bold(undecided)) + ", smallest p from " +
-         with_digits(p.low, 1) + " to " + with_digits(p.high, 1) + ".";
+         (!undecided.empty() ? bold(undecided)
+          : !places.empty()  ? "the same first effect from each, at different places ("_html + places + ")"
+                             : "the same first verdict from each"_html) +
+         ", smallest p from " + with_digits(p.low, 1) + " to " + with_digits(p.high, 1) + ".";
 }
 
 /// Says so where the interval of the gain in cross-validation, which decided, holds zero.
-std::string gain_in_doubt(const FittedCandidate& chosen) {
-  const Interval& gain = chosen.cross_validated_interval;
+std::string gain_in_doubt(const DiagnosisRound& round) {
+  if (!found(round)) return "";
+  const FittedCandidate& chosen = round.candidates.front();
+  const Interval gain = chosen.unseen_gain_interval();
   if (!(gain.low <= 0.0)) return "";
-  return " Blocks left out of its fit do not show its gain for sure: the objective is lower by " +
-         with_decimals(chosen.cross_validated, 3) + " (95 %: " + with_decimals(gain.low, 3) + " to " +
+  return " Blocks left out of its fit do not show the gain of " + round.effect +
+         " for sure: the objective, less the price of its place, is lower by " +
+         with_decimals(chosen.unseen_gain(), 3) + " (95 %: " + with_decimals(gain.low, 3) + " to " +
          with_decimals(gain.high, 3) + ").";
 }
 
@@ -91,8 +100,8 @@ Markup sure(const DiagnosisRecord& record) {
                                         ", corrected for the number of families.";
   if (const std::string row = residual_text(first, record.options.later_level); !row.empty())
     text += (rare.empty() ? " But " : " And ") + row + ".";
-  if (found(first) && first.alike.empty()) text += " No other effect that was allowed comes close to it.";
-  if (found(first)) text += gain_in_doubt(first.candidates.front());
+  if (found(first) && first.alike.empty()) text += " No other effect that passes the thresholds comes close to it.";
+  for (const DiagnosisRound& round : d.rounds) text += gain_in_doubt(round);
   return Markup() + text + repeated(d.stability);
 }
 
@@ -141,7 +150,9 @@ std::string undecided(const Diagnosis& d) {
   for (const DetectionLimit& limit : d.rounds.back().limits)
     if (std::isnan(limit.amount)) hidden.push_back(limit.effect);
   if (!hidden.empty()) text += "Even a large amount of these would not show for sure: " + listed(hidden) + ".";
-  return text.empty() ? "Every effect of the library would have been seen, from the amounts below on." : text;
+  return text.empty() ? "None of the effects of the library is hidden: one above its amount below would most likely "
+                        "have been seen."
+                      : text;
 }
 
 /// Names the effects that speeds at more screens would show at a smaller amount, or at all; empty if there are none.
@@ -174,7 +185,7 @@ std::string next(const DiagnosisRecord& record) {
   std::string text = further_speeds(d.rounds.back().limits);
   for (const FamilyTest& family : d.rounds.front().families)
     if (!family.may_name)
-      text += "Blocks of at least six different rocks. ";
+      text += "Blocks of more rocks (six at least). ";
     else if (std::isnan(family.p_value))
       text += "For the family " + family.name + " " + family.note + ". ";
   text += more_blocks(record);

@@ -81,7 +81,8 @@ Json judged_json(const JudgedModel& model, const JudgedModel& reference, std::sp
     groups.push_back({{"group", model.score.groups[g].name},
                       {"error", json_of(model.score.groups[g].score)},
                       {"log_score", json_of(g < logs.size() ? -logs[g].score : kNotGiven)},
-                      {"rows", model.score.groups[g].rows}});
+                      {"rows", model.score.groups[g].rows},
+                      {"rows_as_climatology", model.score.groups[g].unseen}});
   const Reduction less = reduction(reference.score, model.score, clusters);
   const NatsGained nats = nats_gained(reference.log_score, model.log_score, clusters);
   return {{"error", json_of(model.score.total)},      {"reduction", json_of(less.share)},
@@ -119,7 +120,7 @@ std::string gain_text(double gain, const Interval& interval) {
 
 std::string judgement_markdown(const BeforeAfter& e, const std::string& ranks) {
   std::string text;
-  for (const std::string& sentence : {skill_sentence(e.after), tail_before_after(e)})
+  for (const std::string& sentence : {skill_sentence(e.after), tail_before_after(e), leaving_sentence(e.after)})
     if (!sentence.empty()) text += sentence + (sentence.ends_with('.') ? "" : ".") + "\n\n";
   for (const std::string& sentence : deposit_sentences(e.after)) text += sentence + ".\n\n";
   if (e.after.coverage.empty()) return text;

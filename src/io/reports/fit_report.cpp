@@ -56,7 +56,9 @@ Json error_of(const Calibration& c) {
                         {"before", json_of(e.before.score.groups[g].score)},
                         {"after", json_of(e.after.score.groups[g].score)},
                         {"climatology", json_of(e.after.climatology.groups[g].score)},
-                        {"rows", e.after.score.groups[g].rows}});
+                        {"rows", e.after.score.groups[g].rows},
+                        {"rows_as_climatology",
+                         {{"before", e.before.score.groups[g].unseen}, {"after", e.after.score.groups[g].unseen}}}});
     error[e.after.rows] = {{"before", json_of(e.before.score.total)},
                            {"after", json_of(e.after.score.total)},
                            {"reduction", json_of(e.reduction.share)},
@@ -64,6 +66,7 @@ Json error_of(const Calibration& c) {
                            {"climatology", json_of(e.after.climatology.total)},
                            {"skill", json_of(e.after.skill.share)},
                            {"skill_ci95", json_of(e.after.skill.interval)},
+                           {"leaving", json_of(e.after.leaving_trials)},
                            {"blocks", e.after.blocks},
                            {"groups", groups}};
     if (e.after.deposits) error[e.after.rows]["deposits"] = deposits_json(e.after);
@@ -135,11 +138,7 @@ std::string error_lines(const Calibration& c) {
     text += "| **mean** | **" + with_decimals(e.before.score.total, 3) + "** | **" +
             with_decimals(e.after.score.total, 3) + "** | **" + with_decimals(e.after.climatology.total, 3) + "** | " +
             std::to_string(e.after.score.rows.size()) + " |\n\n";
-    text += "The fit lowers the error by " + with_decimals(100.0 * e.reduction.share, 1) +
-            " % (95 % interval over the " +
-            (e.clusters.given && e.clusters.count < e.after.blocks ? "groups" : "blocks") + ": " +
-            with_decimals(100.0 * e.reduction.interval.low, 1) + " to " +
-            with_decimals(100.0 * e.reduction.interval.high, 1) + " %).\n\n" + judgement_markdown(e, "ranks.svg");
+    text += "The fit lowers the error by " + gain_of_fit(e) + ".\n\n" + judgement_markdown(e, "ranks.svg");
   }
   return text;
 }
@@ -161,6 +160,14 @@ std::string distribution_lines(const Comparison& comparison) {
 }
 
 }  // namespace
+
+std::string gain_of_fit(const BeforeAfter& e) {
+  if (hardly_simulated(e.before.score) || hardly_simulated(e.after.score))
+    return "an amount that cannot be told: start or fit hardly simulates what was measured";
+  return with_decimals(100.0 * e.reduction.share, 1) + " % (95 % interval over the " +
+         (e.clusters.are_groups() ? "groups" : "blocks") + ": " + with_decimals(100.0 * e.reduction.interval.low, 1) +
+         " to " + with_decimals(100.0 * e.reduction.interval.high, 1) + " %)";
+}
 
 std::string calibration_json(const Calibration& c) {
   Json json{{"program", "talus"},

@@ -44,9 +44,8 @@ std::string verdicts_text(const Stability& stability) {
 
 /// Number of the groups or blocks that an interval is over: "8 groups".
 std::string clusters_text(const BeforeAfter& e, const DiagnosisRecord& record) {
-  const bool groups = e.clusters.given && e.clusters.count < e.after.blocks;
   const bool few = !e.clusters.given && !record.clusters.empty();
-  return std::to_string(e.clusters.count) + (groups ? " groups" : " blocks") +
+  return std::to_string(e.clusters.count) + (e.clusters.are_groups() ? " groups" : " blocks") +
          (few ? " (fewer than three groups: blocks are taken to be independent)" : "") +
          (e.clusters.by_block.empty()
               ? ""
@@ -200,9 +199,11 @@ Json evidence_of(const DiagnosisRecord& record) {
 }
 
 Json stability_json(const Stability& stability) {
-  Json verdicts = Json::array(), p_values = Json::array(), seeds = Json::array(), families = Json::array();
+  Json verdicts = Json::array(), where = Json::array(), p_values = Json::array(), seeds = Json::array(),
+       families = Json::array();
   for (const BaseFitVerdict& fit : stability.fits) {
     verdicts.push_back(fit.effect);
+    where.push_back(fit.where);
     p_values.push_back(json_of(fit.p_value));
     seeds.push_back(fit.seed);
   }
@@ -211,6 +212,7 @@ Json stability_json(const Stability& stability) {
   const std::vector<std::string> names = verdicts_of(stability);
   return {{"fits", stability.fits.size()},
           {"verdicts", verdicts},
+          {"where", where},
           {"p_range", json_of(p_range_of(stability))},
           {"p_values", p_values},
           {"seeds", seeds},

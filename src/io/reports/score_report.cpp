@@ -6,6 +6,7 @@
 #include "coverage_report.hpp"
 #include "deposit_report.hpp"
 #include "talus/base/text.hpp"
+#include "talus/fit/diagnose/diagnosis_rules.hpp"
 
 namespace talus::io {
 namespace {
@@ -74,6 +75,12 @@ double unseen_share(const Score& score) {
 Reduction skill_of(const Score& score, const Score& climatology, std::span<const std::uint32_t> clusters) {
   if (score.rows.empty() || hardly_simulated(score)) return {};
   return reduction(climatology, score, clusters);
+}
+
+/// Skill that a fit of so many numbers shows on its own rows although it has none on others: each number lowers the sum
+/// of the scores as it does in Akaike's criterion (`DiagnosisRules::price`).
+double skill_of_fit(const ScoredRows& s) {
+  return DiagnosisRules{}.price * static_cast<double>(s.fitted) / static_cast<double>(s.blocks) / s.climatology.total;
 }
 
 /// Number of blocks that were measured at rest, of which more than a quarter of the simulated trials leave the DEM. A
@@ -158,12 +165,16 @@ ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<c
   out.intervals = score_intervals(out.score, clusters);
   out.climatology = score_of_climatology(campaign, ask, how);
   out.climatology_interval = score_intervals(out.climatology, clusters).total;
-  out.skill = skill_of(out.score, out.climatology, clusters);
+  ScoreOptions without_own = how;
+  without_own.own_value_too = false;
+  out.compared = score(campaign, runs, ask, without_own);
+  out.skill = skill_of(out.compared, out.climatology, clusters);
   out.tail_begin = tail_begin(campaign);
   out.tail = tail_score(campaign, runs, ask, folds);
   out.tail_interval = score_intervals(out.tail, clusters).total;
   out.tail_climatology = tail_score_of_climatology(campaign, ask, folds);
   out.coverage = coverage(campaign, runs, ask);
+  out.leaving_trials = leaving_test(campaign, runs, ask);
   out.leaving = blocks_that_leave(campaign, runs, ask);
   out.not_counted = measured_but_not_scored(campaign, ask, out.score);
   if (campaign.deposits != nullptr) {
@@ -188,7 +199,8 @@ BeforeAfter compared(const Campaign& campaign, ScoredRows before, ScoredRows aft
 ScoredRows in_large_groups(ScoredRows scored, std::span<const std::uint32_t> clusters) {
   scored.score = of_large_groups(scored.score);
   scored.climatology = of_large_groups(scored.climatology);
-  scored.skill = skill_of(scored.score, scored.climatology, clusters);
+  scored.compared = of_large_groups(scored.compared);
+  scored.skill = skill_of(scored.compared, scored.climatology, clusters);
   return scored;
 }
 
@@ -197,7 +209,7 @@ std::string skill_sentence(const ScoredRows& s) {
     return rows_in_words(s.rows) + " rows: skill cannot be told: " + percent(unseen_share(s.score)) +
            " of the score is of rows that have too few simulated values and score as the climatology";
   if (std::isnan(s.skill.share)) return {};
-  const std::string errors = with_decimals(s.score.total, 3) + " against the climatology's " +
+  const std::string errors = with_decimals(s.compared.total, 3) + " against the climatology's " +
                              with_decimals(s.climatology.total, 3) +
                              (s.deposits ? " (blocks anywhere on the mapped ground)" : "");
   const std::string interval = " (95 %: " + with_decimals(100.0 * s.skill.interval.low, 1) + " to " +
@@ -207,8 +219,13 @@ std::string skill_sentence(const ScoredRows& s) {
   if (!(s.skill.share > 0.0))
     return rows + "no skill: " + errors + ": the measurements of the " + (s.rows == "fit" ? "other " : "") +
            "fitting blocks, without any model, are " + (s.skill.interval.high < 0.0 ? "nearer" : "as near or nearer");
-  return rows + "skill " + with_decimals(100.0 * s.skill.share, 1) + " %" + interval + ": " + errors +
-         (s.skill.interval.low > 0.0 ? "" : "; it may have no skill");
+  const double of_fit = skill_of_fit(s);
+  const std::string of_numbers = of_fit > 0.0 ? "; fitting " + std::to_string(s.fitted) + " numbers to " +
+                                                    std::to_string(s.blocks) + " blocks gains some " +
+                                                    with_decimals(100.0 * of_fit, 1) + " % on them without any skill"
+                                              : "";
+  return rows + "skill " + with_decimals(100.0 * s.skill.share, 1) + " %" + interval + ": " + errors + of_numbers +
+         (s.skill.interval.low > of_fit ? "" : "; it may have no skill");
 }
 
 std::string tail_sentence(const ScoredRows& s) {
@@ -219,7 +236,7 @@ std::string tail_sentence(const ScoredRows& s) {
          with_decimals(s.tail_climatology.total, 3) + (s.tail.total < s.tail_climatology.total ? "" : ": no skill");
 }
 
-std::vector<std::string> score_warnings(const ScoredRows& s) {
+std::vector<std::string> unscored_warnings(const ScoredRows& s) {
   std::vector<std::string> warnings;
   for (const GroupScore& group : s.score.groups)
     if (2 * group.unseen > group.rows)
@@ -227,6 +244,11 @@ std::vector<std::string> score_warnings(const ScoredRows& s) {
                          rows_in_words(s.rows) + " rows have fewer than " + std::to_string(kFewestSimulated) +
                          " simulated values and score as the climatology: the model seldom does there what was "
                          "measured, and the score says nothing of it (more trials may help)");
+  return warnings;
+}
+
+std::vector<std::string> score_warnings(const ScoredRows& s) {
+  std::vector<std::string> warnings = unscored_warnings(s);
   if (s.leaving > 0 && s.deposits)
     warnings.push_back("more than half of the trials of " + std::to_string(s.leaving) + " of " +
                        std::to_string(s.blocks) + " " + rows_in_words(s.rows) +
@@ -309,6 +331,7 @@ std::string score_json(const ScoreSettings& settings, std::span<const ScoredRows
                     {"climatology", climatology_json(s)},
                     {"tail", tail_json(s)},
                     {"coverage", json_of(s.coverage)},
+                    {"leaving", json_of(s.leaving_trials)},
                     {"groups", groups},
                     {"not_scored", s.not_counted}};
     if (s.deposits) json[s.rows]["deposits"] = deposits_json(s);

@@ -52,6 +52,9 @@ struct FittedEffect {
   double net_gain() const { return gain - price; }
   /// Gain on blocks that its fit has not seen, less the price of its place. NaN: not cross-validated.
   double unseen_gain() const { return cross_validated - place_price; }
+  Interval unseen_gain_interval() const {
+    return {cross_validated_interval.low - place_price, cross_validated_interval.high - place_price};
+  }
 };
 
 /// An effect fitted together with the parameters of the base, to one campaign.

@@ -28,6 +28,8 @@ struct Stability {
 std::vector<std::string> verdicts_of(const Stability& stability);
 /// "undecided between X and Y" where the verdicts differ; else empty.
 std::string undecided_text(const Stability& stability);
+/// "3 of 5 zone forest, 2 of 5 zone meadow" where the fits name one effect at several places; else empty.
+std::string places_text(const Stability& stability);
 /// Smallest and largest p-value of the fits.
 Interval p_range_of(const Stability& stability);
 /// That of a family, uncorrected; NaN where it was not tested.

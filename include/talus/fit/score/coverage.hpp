@@ -49,13 +49,31 @@ struct Coverage {
 double random_rank(std::span<const double> simulated, double measured, double draw);
 
 /// The calibration of the run-out (plan distance from the release to the stop), and of speed, jump and spin at the
-/// first crossing of each screen, of the asked blocks. If all blocks of the campaign came to rest, a trial
-/// that left the terrain counts as a run-out beyond the measured one; else, and of mapped blocks, it is left out, as
-/// blocks that left are missing among the measured. Left out: observables with fewer than five ranks; a block
-/// with fewer than ten simulated values.
+/// first crossing of each screen, of the asked blocks. If all of them came to rest, a trial that left the terrain
+/// counts as a run-out beyond the measured one; else, and of mapped blocks, it is left out, as blocks that left are
+/// missing among the measured: `leaving_test` counts these trials. Left out: observables with fewer than five ranks; a
+/// block with fewer than ten simulated values.
 ///
 /// @param runs  by block of the campaign; those asked for must have been simulated
 std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
                                std::uint64_t seed = 1);
+
+/// Whether blocks leave the terrain more often in the model than they did.
+struct LeavingTest {
+  std::size_t blocks = 0;      ///< asked ones
+  std::size_t missing = 0;     ///< those that were not measured at rest: at most so many left
+  double expected = 0.0;       ///< number of blocks that leave by the model: the sum of the shares of their trials
+  double p_value = kNotGiven;  ///< one-sided; NaN: fewer than five blocks, or mapped ones
+};
+
+/// P-value: the probability that at most M of the blocks leave, M of which have no measured place of rest, where block
+/// b leaves with probability
+///
+///   (k_b + m_b) / (n_b + 1)        k_b of its n_b trials left; m_b = 1 if it has no measured place of rest, else 0
+///
+/// If all missing blocks have left, that is exact for any n_b: given n_b + 1 trajectories of a block, the measured one
+/// is equally likely to be each of them. A missing block that came to rest unseen makes the p-value too large, never
+/// too small.
+LeavingTest leaving_test(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask);
 
 }  // namespace talus

@@ -30,9 +30,11 @@ inline constexpr std::size_t kFewestClusters = 3;
 
 /// Number of clusters that an interval of these rows rests on, and whether they are those that were given.
 struct UsedClusters {
-  std::size_t count = 0;
+  std::size_t count = 0, blocks = 0;    ///< of clusters, and of the blocks in them
   bool given = true;                    ///< false: each block is its own
   std::vector<std::string> by_block{};  ///< groups of scores that fewer than three given clusters have rows in
+
+  bool are_groups() const { return given && count < blocks; }
 };
 UsedClusters used_clusters(const Score& score, std::span<const std::uint32_t> clusters);
 

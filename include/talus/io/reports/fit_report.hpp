@@ -28,6 +28,9 @@ std::string calibration_json(const Calibration& calibration);
 /// The text of report.md: the same for people.
 std::string calibration_report(const Calibration& calibration);
 
+/// "5.2 % (95 % interval over the blocks: 1.0 to 9.4 %)", or that it cannot be told.
+std::string gain_of_fit(const BeforeAfter& error);
+
 /// Remark on a 95 % interval: "not identifiable", "ends at the bound of the search", both, or nothing.
 std::string interval_note(bool identifiable, bool at_bound);
 /// Warns of an interval that the bound of the search may cut short.

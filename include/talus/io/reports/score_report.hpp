@@ -20,11 +20,14 @@ struct ScoredRows {
   ScoreIntervals intervals;
   Score climatology;  ///< of the same rows
   Interval climatology_interval;
-  Reduction skill;          ///< by which the model lowers the climatology's error
+  Score compared;           ///< as `score`, but rows with too few simulated values score exactly as the climatology
+  Reduction skill;          ///< by which the model, as `compared`, lowers the climatology's error
+  std::size_t fitted = 0;   ///< numbers that were fitted to these rows
   double tail_begin = 0.0;  ///< run-out beyond which the tail is scored [m]
   Score tail, tail_climatology;
   Interval tail_interval;
   std::vector<Coverage> coverage;
+  LeavingTest leaving_trials;
   Score log_score, log_climatology;      ///< minus log densities [nats]
   std::optional<DepositCheck> deposits;  ///< of blocks that were mapped where they lie
   /// Blocks at rest of which more than a quarter of the trials leave the DEM; of mapped ones more than half.
@@ -66,9 +69,12 @@ struct ScoreSettings {
 /// Compares the scores of two models on the same rows.
 BeforeAfter compared(const Campaign& campaign, ScoredRows before, ScoredRows after);
 
-/// One warning for each group in which more than half of the rows score as the climatology (such rows do not score the
-/// model, so that a fit can hide its errors there), one for blocks that leave the DEM, and one for each share of
-/// measured values below a simulated percentile that a right model does not give.
+/// One warning for each group in which more than half of the rows score as the climatology: such rows do not score the
+/// model, so that a fit can hide its errors there.
+std::vector<std::string> unscored_warnings(const ScoredRows& scored);
+
+/// These, one for blocks that leave the DEM, and one for each share of measured values below a simulated percentile
+/// that a right model does not give.
 std::vector<std::string> score_warnings(const ScoredRows& scored);
 
 /// Whether the model beats the climatology, in words: "no skill: ..." where it does not. Empty where nothing was

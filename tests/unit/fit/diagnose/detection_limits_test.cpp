@@ -35,6 +35,20 @@ TEST(DetectionLimits, BeyondItsBoundsAnEffectIsNotSeen) {
   EXPECT_TRUE(std::isnan(detection_limits(Campaign{}, Axis{}, test_with_error(2.3), candidates)[0].amount));
 }
 
+/// The number that is measured best would have to go beyond its bounds: the other one shows the effect.
+TEST(DetectionLimits, AreOfAParameterThatCanShowTheEffect) {
+  Candidate two = drag();
+  two.parameters.push_back(two.parameters.front());
+  two.parameters[0].key = "damping", two.parameters[0].upper = 0.5;
+  two.tested = 2;
+  ScoreTest test;
+  test.effects.push_back({"air-drag", {}, {}, 1.0, {}, {{"damping", {{0}, 0, 1.0}}, {"drag", {{0}, 1, 1.1}}}});
+  const auto limits = detection_limits(Campaign{}, Axis{}, test, std::vector<Candidate>{two});
+  ASSERT_EQ(limits.size(), 1U);
+  EXPECT_EQ(limits[0].key, "drag");
+  EXPECT_DOUBLE_EQ(limits[0].amount, 0.99);
+}
+
 TEST(DetectionLimits, OfFurtherMeasurementsStandBesideTheirOwnEffect) {
   std::vector<DetectionLimit> limits{{.effect = "air-drag", .key = "drag"}, {.effect = "block-mass", .key = "m"}};
   const std::vector<DetectionLimit> further{{.effect = "block-mass", .key = "m", .amount = 0.3},

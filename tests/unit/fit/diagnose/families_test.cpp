@@ -253,6 +253,25 @@ TEST(Families, SayWhyNoPropertyWasTestedAndWhatChangedPlaces) {
             "p from all 36 arrangements of the rocks within their sites, not of their releases");
 }
 
+/// Six rocks, two at each of three sites, have 2^3 arrangements: no p is below 1/8, and the family takes no level.
+TEST(Families, APropertyThatNoArrangementCanShowIsNotNamed) {
+  Campaign c = measured().campaign;
+  c.blocks.resize(12);
+  std::vector<double> energy;
+  Numbers numbers(9);
+  for (std::size_t b = 0; b < 12; ++b) {
+    c.blocks[b].mass = 500.0 * std::pow(1.1, static_cast<double>(b % 6));
+    c.blocks[b].axes.setConstant(equivalent_diameter(c.blocks[b].mass, c.blocks[b].density));
+    c.blocks[b].group = "s" + std::to_string(b % 3);
+    energy.push_back(numbers.normal());
+  }
+  const FamilyTest family = test_block_property(std::vector<BlockNumbers>{{c, energy}}, {});
+  EXPECT_FALSE(family.may_name);
+  EXPECT_EQ(family.note,
+            "p from all 8 arrangements of the rocks within their sites, not of their releases, of which none could be "
+            "rare: a property of the block cannot be named from them");
+}
+
 /// The permutations give as small a p as the data sets: 12 blocks have 479 001 600 arrangements to choose from.
 TEST(Families, HaveAsManyArrangementsAsDataSets) {
   Campaign c = measured().campaign;

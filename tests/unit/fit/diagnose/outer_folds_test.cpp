@@ -288,8 +288,14 @@ TEST(Stability, VerdictsThatDifferAreUndecided) {
   EXPECT_EQ(undecided_text(s), "undecided between block-shape, none and block-mass");
   EXPECT_EQ(p_range_of(s).low, 0.01);
   EXPECT_EQ(p_range_of(s).high, 0.05);
+  EXPECT_EQ(places_text(s), "");
   for (BaseFitVerdict& fit : s.fits) fit.effect = "none";
   EXPECT_EQ(undecided_text(s), "");
+  EXPECT_EQ(places_text(s), "");
+  for (std::size_t i = 0; i < 5; ++i)
+    s.fits[i].effect = "soft-ground", s.fits[i].where = i % 2 == 0 ? "forest" : "meadow";
+  EXPECT_EQ(undecided_text(s), "");
+  EXPECT_EQ(places_text(s), "3 of 5 forest, 2 of 5 meadow");
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
 
 #include "support/campaigns.hpp"
 #include "talus/fit/score/tail.hpp"
@@ -120,6 +122,9 @@ TEST(CoverageTest, IsTheExactBinomialOne) {
   EXPECT_NEAR(coverage_of.below[0].p_value, 2.0 * 0.07548367, 1e-7);
   EXPECT_EQ(coverage_of.below[0].expected.low, 0.0);
   EXPECT_EQ(coverage_of.below[0].expected.high, 3.0);
+  EXPECT_EQ(coverage_of.below[1].expected.low, 6.0);  // P(X <= 5) = 0.0207, P(X <= 6) = 0.0577
+  EXPECT_EQ(coverage_of.below[1].expected.high, 14.0);
+  EXPECT_EQ(coverage_of.below[2].expected.low, 17.0);  // as below P5 from the other end: 3 of 20 beyond
   EXPECT_EQ(coverage_of.below[2].count, 20U);
   EXPECT_NEAR(coverage_of.below[2].p_value, 2.0 * 0.35848592, 1e-7);
 }
@@ -144,6 +149,57 @@ TEST_F(CoverageOf, TrialsThatLeftWentFarther) {
   for (std::size_t rank = 0; rank < 7; ++rank) EXPECT_EQ(cut.ranks[rank], whole.ranks[rank]);
   campaign_.blocks[0].stop.reset();
   EXPECT_LT(coverage(campaign_, runs_, all_).front().below[1].count + 5, whole.below[1].count);
+}
+
+/// Of 24 blocks 60 of 200 trials leave. None was missing: all stay with (1 - 60/201)^24. One was missing: it leaves
+/// with 61/201, and at most one does.
+TEST(Leaving, IsTheProbabilityThatSoFewLeave) {
+  Campaign c = campaign_on_slope(24);
+  std::vector<BlockRuns> runs(24);
+  for (std::size_t b = 0; b < 24; ++b) {
+    c.blocks[b].stop = Eigen::Vector2d::Zero();
+    runs[b].trials = 200;
+    runs[b].ends[static_cast<std::size_t>(End::Left)] = 60;
+  }
+  std::vector<bool> ask(24, true);
+  const double q = 60.0 / 201.0, r = 61.0 / 201.0;
+  const LeavingTest none = leaving_test(c, runs, ask);
+  EXPECT_NEAR(none.p_value, std::pow(1.0 - q, 24), 1e-15);
+  EXPECT_NEAR(none.expected, 7.2, 1e-12);
+  c.blocks[7].stop.reset();
+  const LeavingTest one = leaving_test(c, runs, ask);
+  EXPECT_EQ(one.missing, 1U);
+  EXPECT_NEAR(one.p_value, std::pow(1.0 - q, 23) + 23.0 * q * std::pow(1.0 - q, 22) * (1.0 - r), 1e-15);
+  for (std::size_t b = 0; b < 24; ++b) c.blocks[b].stop.reset();
+  EXPECT_NEAR(leaving_test(c, runs, ask).p_value, 1.0, 1e-12);  // all may have left
+  std::fill(ask.begin() + 4, ask.end(), false);
+  EXPECT_TRUE(std::isnan(leaving_test(c, runs, ask).p_value));
+}
+
+/// Measured blocks are trajectories of the model themselves: the share of the campaigns with p <= 0.05 is at most 0.05,
+/// and where half of the blocks that stayed were not found it is smaller.
+TEST(Leaving, OfARightModelIsSeldomRare) {
+  constexpr std::uint32_t kBlocks = 20, kTrials = 30, kSets = 4000;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform;
+  Campaign c = campaign_on_slope(kBlocks);
+  std::vector<BlockRuns> runs(kBlocks);
+  std::array<int, 2> rare{};
+  for (std::uint32_t set = 0; set < kSets; ++set)
+    for (const bool unfound : {false, true}) {
+      for (std::uint32_t b = 0; b < kBlocks; ++b) {
+        const double p = 0.02 * (b + 1);
+        runs[b].trials = kTrials;
+        runs[b].ends[static_cast<std::size_t>(End::Left)] =
+            std::binomial_distribution<std::uint32_t>(kTrials, p)(random);
+        c.blocks[b].stop = Eigen::Vector2d::Zero();
+        if (uniform(random) < p || (unfound && uniform(random) < 0.5)) c.blocks[b].stop.reset();
+      }
+      rare[unfound] += leaving_test(c, runs, std::vector<bool>(kBlocks, true)).p_value <= 0.05 ? 1 : 0;
+    }
+  EXPECT_LE(rare[0], 0.05 * kSets + 3.0 * std::sqrt(0.05 * 0.95 * kSets));
+  EXPECT_GE(rare[0], 0.02 * kSets);  // counts are coarse: not much less than 5 %
+  EXPECT_LT(rare[1], 0.01 * kSets);
 }
 
 /// A block of which too few trials stopped has no rank.
