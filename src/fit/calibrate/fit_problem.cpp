@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "talus/fit/score/bootstrap.hpp"
 #include "talus/fit/score/joined_scores.hpp"
 
 namespace talus {
@@ -28,8 +29,10 @@ std::vector<bool> FitProblem::rows() const {
 
 std::vector<std::uint32_t> FitProblem::streams() const {
   std::vector<std::uint32_t> all;
-  for (const FitSite& site : sites)
-    for (const MeasuredBlock& block : site.campaign.blocks) all.push_back(block.stream);
+  for (const FitSite& site : sites) {
+    const std::vector<std::uint32_t> own = bootstrap_streams(site.campaign, site.name);
+    all.insert(all.end(), own.begin(), own.end());
+  }
   return all;
 }
 

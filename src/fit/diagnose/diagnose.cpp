@@ -24,7 +24,7 @@ class DiagnosisLoop {
       : campaign_(campaign),
         scope_(scope),
         rows_(fitting_rows(campaign)),
-        streams_(streams_of(campaign)),
+        streams_(bootstrap_streams(campaign)),
         options_(options),
         rules_(options_.rules),
         fits_(campaign, options_, rows_, [this](double share) { return proceeds(share); }) {

@@ -160,7 +160,7 @@ void EffectFits::take_fit(FittedModel&& fitted, FittedCandidate& candidate) cons
 }
 
 void EffectFits::measure_gain(const FittedModel& base, FittedCandidate& candidate) const {
-  set_gain(candidate, base.objective, candidate.fitted.objective, streams_of(campaign_));
+  set_gain(candidate, base.objective, candidate.fitted.objective, bootstrap_streams(campaign_));
 }
 
 /// The base as the model of a candidate at its off values.
@@ -280,7 +280,7 @@ Confirmation EffectFits::confirmation(const FittedModel& base, const FittedCandi
   const DiagnosisRules& rules = options_.rules;
   const Difference change =
       mean_difference(cross_validated(base, Judges::Confirmation),
-                      cross_validated(candidate.fitted, Judges::Confirmation), streams_of(campaign_));
+                      cross_validated(candidate.fitted, Judges::Confirmation), bootstrap_streams(campaign_));
   ObserveOptions unseen = observe_options(rules.confirming * options_.trials.compare);
   unseen.first_trial += (1 + 2 * rules.fold_orders) * options_.trials.compare;
   const auto error = [&](const FittedModel& fitted) {

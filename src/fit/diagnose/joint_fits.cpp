@@ -59,7 +59,7 @@ JointFits::JointFits(std::span<const Site> sites, const DiagnoseOptions& options
     : sites_(sites), options_(options), proceed_(std::move(proceed)) {
   for (const Site& site : sites_) {
     rows_.push_back(fitting_rows(*site.campaign));
-    const std::vector<std::uint32_t> own = streams_of(*site.campaign);
+    const std::vector<std::uint32_t> own = bootstrap_streams(*site.campaign, site.name);
     streams_.insert(streams_.end(), own.begin(), own.end());
   }
 }

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "talus/base/expect.hpp"
 #include "talus/fit/campaign/block_draws.hpp"
+#include "talus/fit/score/intervals.hpp"
 
 namespace talus {
 namespace {
+
+constexpr std::size_t kFewestDrawn = 6;  // groups of blocks whose choice a bootstrap can vary
 
 /// The weighted mean of each group; NaN for one of no weight.
 std::vector<double> weighted_groups(const Score& score, std::span<const double> weight) {
@@ -39,6 +43,17 @@ Interval middle(std::vector<double> values) {
 
 double weighted_total(const Score& score, std::span<const double> weight) {
   return total_of(score, weighted_groups(score, weight));
+}
+
+std::vector<std::uint32_t> bootstrap_streams(const Campaign& campaign, const std::string& site) {
+  std::vector<std::uint32_t> groups = clusters_of(campaign);
+  std::set<std::uint32_t> fitted;
+  for (std::size_t b = 0; b < groups.size(); ++b)
+    if (!campaign.blocks[b].holdout) fitted.insert(groups[b]);
+  if (fitted.size() < kFewestDrawn) return streams_of(campaign);
+  for (std::size_t b = 0; b < groups.size(); ++b)
+    if (!site.empty() && !campaign.blocks[b].group.empty()) groups[b] ^= stream_of_name(site);
+  return groups;
 }
 
 std::vector<double> bootstrap_weights(std::span<const std::uint32_t> streams, std::uint32_t draw, std::uint64_t seed) {

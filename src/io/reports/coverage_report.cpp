@@ -86,8 +86,7 @@ std::string leaving_sentence(const ScoredRows& scored) {
   return rows_in_words(scored.rows) + " rows: by the model " + with_decimals(t.expected, 1) + " of " +
          std::to_string(t.blocks) + " blocks leave the DEM, " +
          (t.missing == 0 ? "none did" : "at most " + std::to_string(t.missing) + " did") + " (p " +
-         with_digits(t.p_value, 2) + ")" + (t.p_value < kWrongSpread ? " *" : "") +
-         (t.missing == 0 ? "" : "; run-outs are compared with trials that stay");
+         with_digits(t.p_value, 2) + ")" + (t.missing == 0 ? "" : "; run-outs are compared with trials that stay");
 }
 
 std::string coverage_lines(const ScoredRows& scored) {
@@ -103,7 +102,7 @@ std::string coverage_lines(const ScoredRows& scored) {
     text += "\n";
   });
   const std::string leaving = leaving_sentence(scored);
-  return text + leaving + (leaving.empty() ? "" : "\n");
+  return text + leaving + (scored.leaving_trials.p_value < kWrongSpread ? " *" : "") + (leaving.empty() ? "" : "\n");
 }
 
 std::string coverage_markdown(const std::vector<Coverage>& list) {

@@ -214,7 +214,9 @@ std::string calibration_report(const Calibration& c) {
   std::string text = "# Calibration on " + c.campaign + "\n\nOn the " + c.surface + " surface (" + c.surface_from +
                      ").\n\n## Parameters\n\n" + parameter_lines(c) + "\n";
   text +=
-      "Intervals: 400 fits to blocks with random weights (Bayesian bootstrap), each with its own draw of the prior "
+      "Intervals: 400 fits to blocks with random weights (Bayesian bootstrap; of six groups or more by group), each "
+      "with "
+      "its own draw of the prior "
       "(normal; of the "
       "logarithm where the scale is one, with a factor of e, around the start). **Not identifiable**: the interval is "
       "wider than half of what the prior or the bounds allow; the number in brackets is one of many that do as well. "

@@ -1,5 +1,6 @@
 #pragma once
 #include <span>
+#include <string>
 
 #include "talus/base/sample.hpp"
 #include "talus/fit/score/score.hpp"
@@ -17,8 +18,14 @@ double weighted_total(const Score& score, std::span<const double> weight);
 /// weight. The variance of a mean of n values is that of the values over n + 1; drawing with replacement gives n.
 /// Counts would do as well, but at small n they leave groups without any block.
 ///
-/// @param streams  of the blocks (`streams_of`); blocks of one stream have one weight. The result has their size
+/// @param streams  of the blocks (`bootstrap_streams`); blocks of one stream have one weight. The result has their size
 std::vector<double> bootstrap_weights(std::span<const std::uint32_t> streams, std::uint32_t draw, std::uint64_t seed);
+
+/// Streams for `bootstrap_weights` of the blocks of a campaign: those of one `group` are drawn together, as they are
+/// not independent, where the fitting rows have six groups or more; else, and without groups, each block by itself.
+///
+/// @param site  name of the campaign among several: groups of one name at two sites are two
+std::vector<std::uint32_t> bootstrap_streams(const Campaign& campaign, const std::string& site = {});
 
 /// Difference of two totals of the same rows, negative where `after` is better; the draws vary the released blocks.
 struct Difference {

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <set>
 
 #include "support/campaigns.hpp"
+#include "talus/fit/score/bootstrap.hpp"
 
 namespace talus::test {
 namespace {
@@ -87,6 +89,26 @@ TEST(Intervals, OfAnObservableSeenInFewClustersCover) {
     EXPECT_GE(covered / static_cast<double>(kSets), 0.93) << k;
     EXPECT_LE(covered / static_cast<double>(kSets), 0.97) << k;
   }
+}
+
+/// Blocks of one group are drawn together where the fitting rows have six groups; of five each block is drawn by
+/// itself. Groups of one name at two sites are two.
+TEST(BootstrapStreams, AreOfGroupsWhereThereAreSix) {
+  Campaign c;
+  for (std::uint32_t b = 0; b < 14; ++b) {
+    MeasuredBlock& block = c.blocks.emplace_back();
+    block.stream = stream_of_name("b" + std::to_string(b));
+    block.group = "g" + std::to_string(b % 7);
+    block.holdout = b % 7 == 6;
+  }
+  std::vector<std::uint32_t> streams = bootstrap_streams(c);
+  for (std::size_t b = 0; b < 7; ++b) EXPECT_EQ(streams[b], streams[b + 7]);
+  EXPECT_EQ(std::set(streams.begin(), streams.end()).size(), 7U);
+  const std::vector<std::uint32_t> other = bootstrap_streams(c, "north");
+  EXPECT_EQ(other[0], other[7]);
+  EXPECT_NE(other[0], streams[0]);
+  c.blocks[0].holdout = c.blocks[7].holdout = true;
+  EXPECT_EQ(bootstrap_streams(c), streams_of(c));
 }
 
 /// The order of the rows and the names of the clusters change nothing.
