@@ -1,12 +1,14 @@
 #pragma once
 #include <omp.h>
 
+#include <atomic>
+#include <cstddef>
 #include <exception>
 
 namespace talus {
 
 /// Calls `work` in each thread of a parallel region. An exception must not leave the region: the first one is kept, and
-/// thrown again after it. `on_failure` tells the other threads to stop; without it they go on.
+/// thrown again after it. `on_failure` tells the other threads to stop.
 ///
 /// @param threads  0: all processors
 template <class Work, class OnFailure>
@@ -23,9 +25,17 @@ void in_threads(int threads, const Work& work, const OnFailure& on_failure) {
   }
   if (failure) std::rethrow_exception(failure);
 }
+
+/// Calls `work` with 0 to `count` - 1, the next one in whatever thread is free; after a failure with no further one.
 template <class Work>
-void in_threads(int threads, const Work& work) {
-  in_threads(threads, work, [] {});
+void in_parallel(std::size_t count, int threads, const Work& work) {
+  std::atomic<std::size_t> next = 0;
+  in_threads(
+      threads,
+      [&] {
+        for (std::size_t i = next++; i < count; i = next++) work(i);
+      },
+      [&] { next = count; });
 }
 
 }  // namespace talus

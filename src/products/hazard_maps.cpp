@@ -1,28 +1,12 @@
 #include "talus/products/hazard_maps.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <memory>
 
 #include "base/in_threads.hpp"
 
 namespace talus {
-namespace {
-
-/// Calls `work` with 0 to `count` - 1 in parallel.
-template <class Work>
-void in_parallel(std::size_t count, int threads, const Work& work) {
-  std::atomic<std::size_t> next = 0;
-  in_threads(
-      threads,
-      [&] {
-        for (std::size_t i = next++; i < count; i = next++) work(i);
-      },
-      [&] { next = count; });
-}
-
-}  // namespace
 
 HazardSurvey::HazardSurvey(const Grid& grid, HazardRules rules, HazardMatrix matrix, const ObjectWidth& object,
                            bool curves)

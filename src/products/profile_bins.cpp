@@ -72,7 +72,6 @@ std::vector<ProfileBin> ProfileBins::bins() const {
 void RunoutCounter::add(std::span<const StopRow> rows) {
   for (const StopRow& row : rows) {
     ++counts_.released;
-    if (row.end == End::Left) ++counts_.left;
     if (!rests(row.end)) continue;
     const double distance = std::abs(row.x - row.x_release);
     distances_.push_back(static_cast<float>(distance));

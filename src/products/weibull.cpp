@@ -58,13 +58,12 @@ Weibull fit_to_standard(std::size_t n, std::uint32_t draw, std::uint64_t seed, s
 }
 
 template <class Value>
-Interval middle(const std::vector<WeibullDraw>& draws, double confidence, Value value) {
+Interval middle(const std::vector<WeibullDraw>& draws, Value value) {
   std::vector<double> values;
   values.reserve(draws.size());
   for (const WeibullDraw& draw : draws) values.push_back(value(draw));
   std::sort(values.begin(), values.end());
-  const double tail = 0.5 * (1.0 - confidence);
-  return {quantile(values, tail), quantile(values, 1.0 - tail)};
+  return {quantile(values, kTail), quantile(values, 1.0 - kTail)};
 }
 
 /// Bootstrap sample of the law behind n values with this fit: the pivots of simulated fits, solved for shape and scale.
@@ -123,11 +122,10 @@ WeibullFit fit_weibull(std::span<const double> values, const BootstrapOptions& o
   fit.zeros = values.size() - positive.size();
   fit.law = fit_weibull(positive);
   fit.distance = anderson_darling(positive, fit.law);
-  fit.confidence = options.confidence;
   fit.draws = laws_of(fit.law, positive.size(), options);
   draw_shares(fit, options.seed);
-  fit.shape = middle(fit.draws, options.confidence, [](const WeibullDraw& draw) { return draw.law.shape; });
-  fit.scale = middle(fit.draws, options.confidence, [](const WeibullDraw& draw) { return draw.law.scale; });
+  fit.shape = middle(fit.draws, [](const WeibullDraw& draw) { return draw.law.shape; });
+  fit.scale = middle(fit.draws, [](const WeibullDraw& draw) { return draw.law.scale; });
   return fit;
 }
 
@@ -136,9 +134,9 @@ Exceedance exceedance(const WeibullFit& fit, std::span<const double> values, dou
   const auto above =
       static_cast<std::uint64_t>(std::count_if(values.begin(), values.end(), [&](double v) { return v > limit; }));
   const auto by = [&](const WeibullDraw& draw) { return draw.positive * draw.law.exceedance(limit); };
-  return {by({fit.law, positive}), middle(fit.draws, fit.confidence, by),
+  return {by({fit.law, positive}), middle(fit.draws, by),
           static_cast<double>(above) / static_cast<double>(values.size()),
-          probability_bounds(above, values.size(), fit.confidence)};
+          probability_bounds(above, values.size(), kConfidence)};
 }
 
 }  // namespace talus

@@ -3,6 +3,8 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <atomic>
+#include <functional>
 #include <future>
 #include <optional>
 
@@ -39,11 +41,11 @@ struct StopFigures {
 /// Writers of stops, exits, paths and crossings.
 class Vectors {
  public:
-  Vectors(const LoadedScenario& loaded, const std::filesystem::path& folder, const Observer& observer)
+  Vectors(const LoadedScenario& loaded, const std::filesystem::path& folder, std::function<bool()> proceed)
       : loaded_(loaded),
         scenario_(loaded.scenario),
         folder_(folder),
-        observer_(observer),
+        proceed_(std::move(proceed)),
         stops_(file_of("stops"), loaded, io::PointsWriter::Layer::Stops),
         exits_(file_of("exits"), loaded, io::PointsWriter::Layer::Exits),
         summary_(scenario_.screens.size()),
@@ -57,7 +59,7 @@ class Vectors {
   Sinks sinks() {
     Sinks sinks;
     sinks.stops = [this](std::span<const StopRow> rows) {
-      if (observer_.interrupted()) stop_interrupted();
+      if (!proceed_()) stop_interrupted();
       stops_.write(rows);
       energy_lines_.add(rows);
       gullies_.add(rows);
@@ -96,7 +98,7 @@ class Vectors {
   const LoadedScenario& loaded_;
   const Scenario& scenario_;
   std::filesystem::path folder_;
-  const Observer& observer_;
+  std::function<bool()> proceed_;
   io::PointsWriter stops_, exits_;
   std::optional<io::TrajectoriesWriter> paths_;
   std::optional<io::CrossingsWriter> crossings_;
@@ -108,8 +110,8 @@ class Vectors {
 };
 
 /// Writes the rows of the checkpoints: round by round, in each round the parts in their order.
-StopFigures write_vectors(const ResultSource& source, const Totals& totals, const Observer& observer) {
-  Vectors vectors(source.loaded, source.folder, observer);
+StopFigures write_vectors(const ResultSource& source, const Totals& totals, std::function<bool()> proceed) {
+  Vectors vectors(source.loaded, source.folder, std::move(proceed));
   const Sinks sinks = vectors.sinks();
   for (std::uint32_t round = 0; round < source.checkpoints.front().rounds(); ++round)
     for (const Checkpoint& checkpoint : source.checkpoints) checkpoint.replay(round, sinks);
@@ -139,6 +141,33 @@ std::vector<std::string> warnings_of(const io::RoundsRecord& rounds) {
   return {"--until-error was not reached with " + std::to_string(rounds.done) + " rounds; give a larger --most-rounds"};
 }
 
+/// Writes the vectors beside the maps. What fails first ends both.
+StopFigures write_maps_and_vectors(const ResultSource& source, const Observer& observer, const io::RunRecord& record) {
+  std::atomic<bool> vectors_failed = false, maps_failed = false;
+  const auto vectors = [&] {
+    try {
+      return write_vectors(source, record.totals, [&] { return !maps_failed && !observer.interrupted(); });
+    } catch (...) {
+      vectors_failed = true;
+      throw;
+    }
+  };
+  auto writing = std::async(record.threads > 1 ? std::launch::async : std::launch::deferred, vectors);
+  const Grid& grid = source.loaded.scenario.surface.grid();
+  try {
+    write_maps(make_maps(source.loaded.scenario, source.tally),
+               {source.folder, source.loaded.geo, grid.columns, grid.rows,
+                [&] { return !vectors_failed && !observer.interrupted(); }},
+               record.threads);
+  } catch (...) {
+    const bool ended_by_vectors = vectors_failed;
+    maps_failed = true;
+    if (ended_by_vectors) writing.get();  // throws the cause
+    throw;
+  }
+  return writing.get();
+}
+
 }  // namespace
 
 void write_results(const ResultSource& source, Observer& observer, Stopwatch& watch, io::RunRecord& record) {
@@ -147,16 +176,9 @@ void write_results(const ResultSource& source, Observer& observer, Stopwatch& wa
   const std::filesystem::path& folder = source.folder;
   record.touched_cells = source.tally.touched_cells();
   observer.stage("writing the results");
-  const auto vectors = [&] { return write_vectors(source, record.totals, observer); };
-  const bool aside = record.threads > 1;
-  auto writing = std::async(aside ? std::launch::async : std::launch::deferred, vectors);
-  const Grid& grid = loaded.scenario.surface.grid();
-  write_maps(make_maps(loaded.scenario, source.tally),
-             {folder, loaded.geo, grid.columns, grid.rows, [&observer] { return !observer.interrupted(); }},
-             record.threads);
+  StopFigures stops = write_maps_and_vectors(source, observer, record);
   if (source.tally.weights() != nullptr)
     io::write_hazard(folder / io::kHazardFile, loaded, source.tally, record.totals.left_weight);
-  StopFigures stops = writing.get();
   record.energy_lines = std::move(stops.energy_lines);
   record.gullies = gully_record(stops.gullies, source.tally, loaded);
   record.left_into_gaps = stops.gap_exits.blocks();

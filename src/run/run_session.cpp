@@ -30,7 +30,8 @@ Part part_of(const std::optional<std::string>& given) {
   if (!given) return part;
   const std::string& text = *given;
   char end = '\0';
-  if (std::sscanf(text.c_str(), "%9u/%9u%c", &part.number, &part.of, &end) != 2 || part.number < 1 ||
+  const bool digits = text.find_first_not_of("0123456789/") == std::string::npos;  // %u takes a sign and spaces, too
+  if (!digits || std::sscanf(text.c_str(), "%9u/%9u%c", &part.number, &part.of, &end) != 2 || part.number < 1 ||
       part.number > part.of)
     throw InputError("--part '" + text + "': must be I/N with I from 1 to N, for example 2/3");
   return part;

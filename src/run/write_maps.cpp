@@ -1,7 +1,6 @@
 #include "talus/run/write_maps.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <memory>
 
 #include "base/in_threads.hpp"
@@ -47,14 +46,9 @@ void write_maps(const std::vector<Map>& maps, const io::MapTarget& target, int t
       parts.push_back({map, files.back().get(), i, files.back()->place_of(i) / kTilesOfSquare});
   }
   std::ranges::stable_sort(parts, {}, &Part::square);
-  std::atomic<std::size_t> next = 0;
-  in_threads(
-      threads,
-      [&] {
-        for (std::size_t i = next++; i < parts.size(); i = next++)
-          if (parts[i].file->write_part(parts[i].i)) io::write_style(target.folder, *parts[i].map);
-      },
-      [&] { next = parts.size(); });
+  in_parallel(parts.size(), threads, [&](std::size_t i) {
+    if (parts[i].file->write_part(parts[i].i)) io::write_style(target.folder, *parts[i].map);
+  });
   if (target.proceed && !target.proceed()) stop_interrupted();
 }
 

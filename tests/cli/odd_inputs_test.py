@@ -332,7 +332,13 @@ class Options(OneThread, Case):
                             (("--thresholds", "'30,,300' has an empty item"), ["--thresholds", "30,,300"]),
                             (("--thresholds", "'30,' has an empty item"), ["--thresholds=30,"])):
             self.fails(2, *words, arguments=[*self.arguments(), *more])
-        self.fails(2, "--fit", "empty item", arguments=["calibrate", "campaign.toml", "-o", "fit", "--fit", "En50,,phi"])
+        for item in ("", " "):
+            self.fails(2, "--fit", "empty", arguments=["calibrate", "campaign.toml", "-o", "fit", "--fit", f"En50,{item},phi"])
+
+    def test_spaces_in_lists(self):
+        self.run_well(*self.arguments(), "--thresholds", " 30, 100 ,300", "-q")
+        self.assertEqual([s["value"] for s in self.record("out")["settings"] if s["key"] == "output.energy_thresholds"],
+                         ["[30, 100, 300]"])
 
     def test_empty_values(self):  # of a variable of a script that is not set: the default was taken without a word
         scenario, out = self.write("e.toml", 'dem = "dem.tif"\n'), self.path("out")

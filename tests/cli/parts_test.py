@@ -34,6 +34,11 @@ class Parts(KeptRuns, RunCase):
             self.assertEqual(self.hashes("whole")[name + ".tif"], self.hashes("one")[name + ".tif"], name)
         self.run_well("hazard", self.path("merged"), "-q")  # evaluates what the rounds saved
 
+    def test_parts_are_numbered_in_digits(self):
+        scenario = self.write("s.toml", RUN)
+        for part in ("1/-1", "+1/2", "2/ 3", "0/2", "3/2", "1", "1/2/3", "/"):
+            self.fails(2, f"--part '{part}'", arguments=["run", scenario, "-o", self.path("out"), f"--part={part}"])
+
     def test_warnings_about_the_ground_are_those_of_the_run(self):
         """The complete scenario of a run has every number of a zone beside its preset: it is still the ground of the preset."""
         write_features(self.path("zones.gpkg"), "zones",

@@ -215,6 +215,23 @@ class Content(Report):
                 self.assertEqual(value_of(shown[row, column]), three_digits(float(cells.max()), -9999))
         self.assertIn("No relief under the maps", page.text)  # the DEM has other cells
 
+    def test_sizes_of_the_blocks(self):
+        """One feature has no diameter of its own and takes 1.0 m, another 1.2 m; the rare class is no misfit of the ground."""
+        write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), [1.2]), (box(180, 230, 20, 10), [None])],
+                       [("diameter", ogr.OFTReal)])
+        self.run_well(*self.arguments(diameter="1.0"), "-q")
+        self.assertEqual(self.record("out")["diameters_m"], [1.0, 1.2])
+        self.assertIn("blocks of 1 to 1.2 m: a cell is", self.page().text)
+
+    def test_rare_sizes_are_no_misfit_of_the_ground(self):
+        write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), ["cliff"])], [("name", ogr.OFTString)])
+        self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 2\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = '
+                             '[{ diameter = 1.0, weight = 1000, frequency = 0.1 }, { diameter = 1.4, weight = 1, frequency = 0.1 }]\n')
+        self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "-q")
+        warnings = [w for w in self.record("out")["warnings"] if w.startswith("block sizes: ")]
+        self.assertEqual(len(warnings), 1, warnings)  # of the rare class
+        self.assertRegex(self.page().text, r"Sizes of the blocks and the fit of the ground\s*no warning")
+
     def test_without_hazard_and_screens(self):
         write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), ["cliff"])], [("name", ogr.OFTString)])
         self.run_well(*self.arguments(), "-q")

@@ -170,26 +170,6 @@ void expect_tame(const std::string& page) {
   EXPECT_THAT(page, Not(HasSubstr("\u202e")));
 }
 
-TEST(Facts, DiametersOfBlocksAreNotTheirWeights) {
-  const auto range = [](const std::string& value, const std::string& unit) {
-    RunFacts run;
-    run.settings.push_back({"blocks.diameter", value, unit, "scenario"});
-    return diameters_of(run);
-  };
-  using Pair = std::pair<double, double>;
-  EXPECT_EQ(range("0.8", "m"), Pair(0.8, 0.8));
-  EXPECT_EQ(range("[0.5, 1.5]", "m"), Pair(0.5, 1.5));
-  EXPECT_EQ(
-      range(
-          "[{ diameter = [1, 1.2], weight = 12, frequency = 0.05 }, { diameter = 1.3, weight = 1, frequency = 1e-05 }]",
-          "m"),
-      Pair(1.0, 1.3));
-  const auto spheres = range("{ volume_min = 0.1, volume_max = 4, exponent = 0.6 }", "m3");
-  ASSERT_TRUE(spheres);
-  EXPECT_NEAR(spheres->first, 0.5759, 1e-4);  // (6 V / pi)^(1/3)
-  EXPECT_NEAR(spheres->second, 1.9695, 1e-4);
-}
-
 TEST(Frequency, OfARecord) {
   const FrequencyFacts run = frequency_of(Json::object());
   const FrequencyFacts earlier = frequency_of({{"frequency", {{"file", "w.toml"}, {"replayed", true}}}});

@@ -1,8 +1,9 @@
+#include <omp.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <thread>
 
 #include "commands.hpp"
 #include "estimate.hpp"
@@ -227,7 +228,7 @@ void print_estimate(const LoadedScenario& loaded, unsigned threads) {
   size.crossings = static_cast<double>(sample.crossings) * all / traced;
   size.metres_per_path = sample.length / traced;
   size.with_hazard = talus::AnnualWeights::of(scenario).has_value();
-  const unsigned processors = threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
+  const int processors = threads > 0 ? threads : omp_get_num_procs();
   const double trace_seconds = sample.seconds * all / traced / processors;
   const double write_seconds = seconds_to_write(scenario, size, processors);
   line("time", "about " + duration_text(trace_seconds + write_seconds) + " on " + std::to_string(processors) +

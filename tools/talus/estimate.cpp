@@ -103,7 +103,7 @@ double bytes_at_work(const Scenario& scenario, const RunSize& size) {
          size.trajectories * sizeof(talus::StopRow) + size.crossings * sizeof(talus::Crossing);
 }
 
-double seconds_to_write(const Scenario& scenario, const RunSize& size, unsigned processors) {
+double seconds_to_write(const Scenario& scenario, const RunSize& size, int processors) {
   const double rasters = bands(scenario) * (kEmptyCell * size.grid_cells + kTouchedCell * size.touched_cells);
   return kWriteFiles + rasters / processors + kWriteTrajectory * size.trajectories;
 }

@@ -16,7 +16,7 @@ double bytes_in_memory(const talus::Scenario& scenario, const RunSize& size);  /
 double bytes_of_results(const talus::Scenario& scenario, const RunSize& size);
 /// Bytes beside the results while the run goes on: saved work for --resume, and compressed tiles of maps.
 double bytes_at_work(const talus::Scenario& scenario, const RunSize& size);
-double seconds_to_write(const talus::Scenario& scenario, const RunSize& size, unsigned processors);
+double seconds_to_write(const talus::Scenario& scenario, const RunSize& size, int processors);
 
 /// Two digits of a number: "1 200".
 std::string rounded_text(double value);

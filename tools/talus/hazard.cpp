@@ -131,7 +131,6 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
   if (totals.interrupted || interrupted()) stop_interrupted();
   record.header.rules = tally.hazard_rules();
   record.header.left_weight = totals.left_weight;
-  record.replayed = true;
   auto survey = std::make_unique<talus::HazardSurvey>(record.header.grid, record.header.rules, record.matrix,
                                                       talus::ObjectWidth{record.width, record.header.passages_below},
                                                       record.curves);
@@ -174,7 +173,6 @@ std::vector<std::string> write_objects(const Options& options, const talus::io::
   layer.write(folder, loaded, rules, hits, record.matrix.years);
   progress.finish();
   record.objects_file = options.objects;
-  record.replayed = true;
   std::vector<std::string> lines = layer.hits_text(rules, hits);
   lines.emplace_back(
       "energies of objects are the largest within the outline, those of the maps when a block passes: for a wall take "

@@ -51,7 +51,7 @@ class ProfileBins {
 struct Runout {
   BinDistribution stopped;           ///< of the blocks that stayed: stopped, trapped or caught [m]
   std::vector<std::uint64_t> stops;  ///< number of these by bin of the distance, from 0
-  std::uint64_t left = 0, released = 0;
+  std::uint64_t released = 0;
 };
 
 class RunoutCounter {

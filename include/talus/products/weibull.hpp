@@ -41,7 +41,6 @@ inline constexpr std::size_t kFewestForWeibull = 10;
 struct BootstrapOptions {
   std::uint32_t draws = 2000;
   std::uint64_t seed = 1;
-  double confidence = kConfidence;
 };
 
 /// One of a bootstrap sample.
@@ -58,7 +57,6 @@ struct WeibullFit {
   Interval shape{}, scale{};
   double distance = 0.0;           ///< anderson_darling
   std::vector<WeibullDraw> draws;  ///< bootstrap sample
-  double confidence = kConfidence;
 
   bool accepted() const { return distance <= kAndersonDarling5; }
 };

@@ -11,6 +11,7 @@
 #include "talus/io/results/run_record.hpp"
 #include "talus/physics/effects/registry.hpp"
 #include "talus/products/interval.hpp"
+#include "talus/simulate/scenario/block_sizes.hpp"
 
 namespace talus::io {
 namespace {
@@ -60,14 +61,6 @@ std::vector<std::string> presets_of(const RunFacts& run, bool zones) {
     if (std::ranges::count(presets, name) == 0) presets.push_back(std::move(name));
   }
   return presets;
-}
-
-/// Whether the field of a setting is given by every feature: "0.6 to 1.5 (59 of 59 features)".
-bool of_all_features(const RecordedSetting* setting) {
-  unsigned given = 0, all = 1;
-  const std::size_t at = setting->value.find('(');
-  return at != std::string::npos &&
-         std::sscanf(setting->value.c_str() + at, "(%9u of %9u features)", &given, &all) == 2 && given == all;
 }
 
 /// Blocks that stay on the staircases of steep gullies.
@@ -128,13 +121,12 @@ void check_ends(const RunFacts& run, Checks& checks) {
 }
 
 void check_sizes(const RunFacts& run, Checks& checks) {
-  const auto diameters = diameters_of(run);
   const std::string cell = with_digits(run.grid.cell_x, 4) + " m";
-  if (!diameters) {
+  if (!run.diameters) {
     checks.push_back({Mark::Look, "Cells and blocks", "cells of " + cell + "; diameters: see the settings",
                       "A cell much larger than a block hides the ground that the block meets."});
   } else {
-    const auto& [small, large] = *diameters;
+    const auto& [small, large] = *run.diameters;
     const bool wide = run.grid.cell_x > 5.0 * small;
     checks.push_back({wide ? Mark::Look : Mark::Fine, "Cells and blocks",
                       "cells of " + cell + ", blocks of " + with_digits(small, 3) + " to " + with_digits(large, 3) +
@@ -143,7 +135,7 @@ void check_sizes(const RunFacts& run, Checks& checks) {
                       "The ground between the centres of the cells is a smooth patch; its roughness is in the ground's "
                       "parameters. Compare with a finer DEM where there is one."});
   }
-  const bool warned = warned_of(run, "block sizes:");
+  const bool warned = warned_of(run, kOtherSizes);
   checks.push_back({warned ? Mark::Act : Mark::Fine, "Sizes of the blocks and the fit of the ground",
                     warned ? "a warning of the run says that they differ" : "no warning",
                     "A ground holds for blocks of the sizes to which it was fitted."});
@@ -327,50 +319,7 @@ void check_screens(const CheckedRun& checked, Checks& checks) {
                     "P95 of few blocks is uncertain, P99 more so."});
 }
 
-/// The numbers in a text: 1 and 1.2 of "[1, 1.2]".
-std::vector<double> numbers_of(std::string_view text) {
-  std::vector<double> numbers;
-  for (std::size_t at = 0; (at = text.find_first_of("0123456789", at)) != std::string_view::npos;) {
-    const std::size_t end = std::min(text.find_first_not_of("0123456789.e-+", at), text.size());
-    numbers.push_back(number_in(text.substr(at, end - at)));
-    at = end;
-  }
-  return numbers;
-}
-
-/// The numbers that belong to a key of tables in a text: to "diameter = " in "[{ diameter = [1, 1.2], weight = 3 }]".
-std::vector<double> numbers_after(std::string_view text, std::string_view key) {
-  std::vector<double> numbers;
-  for (std::size_t at = 0; (at = text.find(key, at)) != std::string_view::npos;) {
-    at += key.size();
-    const std::size_t end = std::min(text.find_first_of("=}", at), text.size());  // of the next key, or of the table
-    const std::size_t comma = end < text.size() && text[end] == '=' ? text.rfind(',', end) : end;
-    for (const double number : numbers_of(text.substr(at, comma - at))) numbers.push_back(number);
-  }
-  return numbers;
-}
-
 }  // namespace
-
-std::optional<std::pair<double, double>> diameters_of(const RunFacts& run) {
-  std::vector<double> all;
-  const bool own = std::ranges::any_of(run.settings_of("sources.attributes.diameter"), of_all_features);
-  for (const RecordedSetting& setting : run.settings) {
-    if (own && setting.key.starts_with("blocks.")) continue;  // not used where all features have their own
-    if (!(setting.key.starts_with("blocks.") || setting.key.starts_with("sources.attributes.")) ||
-        setting.key.find("diameter") == std::string::npos)
-      continue;
-    const std::string text = setting.value.substr(0, setting.value.find('('));
-    for (const char* volume : {"volume_min = ", "volume_max = "})
-      for (const double v : numbers_after(text, volume)) all.push_back(diameter_of(v));
-    for (const double d : text.starts_with("[{") ? numbers_after(text, "diameter = ") : numbers_of(text))
-      if (setting.unit == "m") all.push_back(d);
-  }
-  std::erase_if(all, [](double d) { return !(d > 0.0 && d < 1e3); });
-  if (all.empty()) return std::nullopt;
-  const auto [least, most] = std::ranges::minmax(all);
-  return std::pair(least, most);
-}
 
 std::vector<Check> checks_of(const CheckedRun& checked) {
   Checks checks;

@@ -35,7 +35,4 @@ Markup checks_html(const std::vector<Check>& checks);
 /// What the model takes for granted, with the choices of this run.
 Markup assumptions_html(const CheckedRun& checked);
 
-/// Smallest and largest diameter that the record names [m]; nothing if it names none.
-std::optional<std::pair<double, double>> diameters_of(const RunFacts& run);
-
 }  // namespace talus::io

@@ -82,6 +82,7 @@ std::optional<GullyFacts> gullies_of(const Json& json) {
 void read_counts(const Json& json, RunFacts& run) {
   run.released = json.at("released").get<double>();
   run.source_cells = number_of(json, "source_cells");
+  if (json.contains("diameters_m")) run.diameters = json.at("diameters_m").get<std::pair<double, double>>();
   run.per_source = number_of(json, "trajectories_per_source");
   run.impacts = number_of(json, "impacts");
   run.kilometres = 1e-3 * number_of(json, "trajectory_metres");

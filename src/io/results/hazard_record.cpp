@@ -95,7 +95,7 @@ std::string hazard_json(const HazardRecord& record) {
   if (record.curves)
     json["curve_energies_kj"] = energies_of_curves(record.header.rules, {record.width, record.header.passages_below});
   json["cells"] = record.cells;
-  if (!record.objects_file.empty()) json["objects"] = {{"file", record.objects_file}, {"replayed", record.replayed}};
+  if (!record.objects_file.empty()) json["objects"] = {{"file", record.objects_file}, {"replayed", true}};
   if (!record.frequency.file.empty()) {
     json["frequency"] = json_of(record.frequency, scale.total);
     json["frequency"]["replayed"] = true;

@@ -186,6 +186,8 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["status"] = too_many_limits(totals) ? "too many trajectories ended at a limit" : kComplete;
   json["seed"] = scenario.seed;
   json["deformation_coefficient"] = scenario.impact.deformation_coefficient;
+  const Range diameters = diameters_of(scenario);
+  json["diameters_m"] = {json_of(diameters.low), json_of(diameters.high)};
   json["source_cells"] = scenario.sources.size();
   json["trajectories_per_source"] = scenario.trajectories;
   json["released"] = totals.released;

@@ -256,7 +256,10 @@ Visit& VisitBatch::new_visit(int column, int row) {
   if (keep_total_) region_->totals.push_back(0.0F);
   const auto trajectory = static_cast<std::uint16_t>(trajectories_.size() - 1);
   size_ -= region_->visits.room();
-  visit_ = &region_->visits.append({{}, cell, trajectory, 0, 0, 0, 0, 0, 0, 0.0F}, spare_);
+  Visit here{};
+  here.cell = cell;
+  here.trajectory = trajectory;
+  visit_ = &region_->visits.append(here, spare_);
   size_ += region_->visits.room();
   return *visit_;
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <stdexcept>
 
@@ -10,7 +11,7 @@ namespace {
 
 TEST(InThreads, CallsEachThreadOnce) {
   std::atomic<int> calls = 0;
-  in_threads(3, [&] { ++calls; });
+  in_threads(3, [&] { ++calls; }, [] {});
   EXPECT_EQ(calls, 3);
 }
 
@@ -20,9 +21,25 @@ TEST(InThreads, OneExceptionReachesTheCallerAndTheOthersGoOn) {
     if (calls++ != 1) throw std::runtime_error("no memory");
     ++finished;
   };
-  EXPECT_THROW(in_threads(3, work), std::runtime_error);
+  std::atomic<int> told = 0;
+  EXPECT_THROW(in_threads(3, work, [&] { ++told; }), std::runtime_error);
   EXPECT_EQ(calls, 3);
   EXPECT_EQ(finished, 1);
+  EXPECT_EQ(told, 2);
+}
+
+TEST(InParallel, TakesEachNumberOnceAndNoneAfterAFailure) {
+  std::array<std::atomic<int>, 1000> calls{};
+  in_parallel(calls.size(), 3, [&](std::size_t i) { ++calls[i]; });
+  for (const auto& count : calls) EXPECT_EQ(count, 1);
+  std::atomic<std::size_t> last = 0;
+  EXPECT_THROW(in_parallel(calls.size(), 1,
+                           [&](std::size_t i) {
+                             last = i;
+                             if (i == 7) throw std::runtime_error("full");
+                           }),
+               std::runtime_error);
+  EXPECT_EQ(last, 7U);
 }
 
 }  // namespace

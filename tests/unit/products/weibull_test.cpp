@@ -56,7 +56,7 @@ TEST(WeibullFit, IntervalsCoverTheTruthAtTheStatedRate) {
   int shape = 0, scale = 0, tail = 0, accepted = 0;
   for (int set = 0; set < kSets; ++set) {
     const std::vector<double> values = drawn(truth, 30, numbers);
-    const WeibullFit fit = fit_weibull(values, {500, static_cast<std::uint64_t>(set), 0.95});
+    const WeibullFit fit = fit_weibull(values, {500, static_cast<std::uint64_t>(set)});
     const auto holds = [](const Interval& i, double value) { return i.low <= value && value <= i.high ? 1 : 0; };
     shape += holds(fit.shape, truth.shape);
     scale += holds(fit.scale, truth.scale);
@@ -75,7 +75,7 @@ TEST(WeibullFit, IntervalsCoverTheTruthAtTheStatedRate) {
 TEST(WeibullFit, IntervalsOfManyValuesAreTheAsymptoticOnes) {
   test::Numbers numbers(5);
   for (const std::size_t n : {std::size_t{1500}, std::size_t{20000}}) {
-    const WeibullFit fit = fit_weibull(drawn({1.5, 2.0}, n, numbers), {1000, 1, 0.95});
+    const WeibullFit fit = fit_weibull(drawn({1.5, 2.0}, n, numbers), {1000, 1});
     const double root = std::sqrt(static_cast<double>(n));
     EXPECT_NEAR((fit.shape.high - fit.shape.low) / (2 * 1.96 * 0.7797 * fit.law.shape / root), 1.0, 0.08);
     EXPECT_NEAR(std::log(fit.scale.high / fit.scale.low) / (2 * 1.96 * 1.053 / fit.law.shape / root), 1.0, 0.08);
@@ -86,17 +86,17 @@ TEST(WeibullFit, OtherValuesAreNotTakenForWeibull) {
   test::Numbers numbers(6);
   std::vector<double> two_kinds = drawn({8.0, 1.0}, 100, numbers), far = drawn({8.0, 10.0}, 100, numbers);
   two_kinds.insert(two_kinds.end(), far.begin(), far.end());
-  EXPECT_FALSE(fit_weibull(two_kinds, {10, 1, 0.95}).accepted());
+  EXPECT_FALSE(fit_weibull(two_kinds, {10, 1}).accepted());
 }
 
 /// A quarter of zeros: the others keep their law, and the chance of an exceedance falls by a quarter.
 TEST(WeibullFit, ZerosAreBlocksThatSlide) {
   test::Numbers numbers(7);
   std::vector<double> values = drawn({1.3, 1.5}, 60, numbers);
-  const WeibullFit without = fit_weibull(values, {100, 1, 0.95});
+  const WeibullFit without = fit_weibull(values, {100, 1});
   const Exceedance jumped = exceedance(without, values, 2.0);
   values.insert(values.begin(), 20, 0.0);
-  const WeibullFit with = fit_weibull(values, {100, 1, 0.95});
+  const WeibullFit with = fit_weibull(values, {100, 1});
   const Exceedance all = exceedance(with, values, 2.0);
   EXPECT_EQ(with.zeros, 20U);
   EXPECT_EQ(with.law.shape, without.law.shape);
@@ -118,7 +118,7 @@ double share_covered(std::size_t n, double zeros, double quantile, std::uint64_t
     std::vector<double> values = drawn(law, n, numbers);
     for (double& x : values)
       if (numbers.uniform(0.0, 1.0) < zeros) x = 0.0;
-    const WeibullFit fit = fit_weibull(values, {500, 1000 * seed + static_cast<std::uint64_t>(set), 0.95});
+    const WeibullFit fit = fit_weibull(values, {500, 1000 * seed + static_cast<std::uint64_t>(set)});
     const Interval bounds = exceedance(fit, values, limit).fitted_bounds;
     if (bounds.low <= truth && truth <= bounds.high) ++covered;
   }
@@ -166,7 +166,7 @@ TEST(WeibullFit, FarBelowTheValuesTheIntervalIsThatOfTheShare) {
   test::Numbers numbers(32);
   std::vector<double> values = drawn({1.3, 1.5}, 3000, numbers);
   values.insert(values.end(), 1000, 0.0);
-  const Interval share = exceedance(fit_weibull(values, {2000, 1, 0.95}), values, 1e-9).fitted_bounds;
+  const Interval share = exceedance(fit_weibull(values, {2000, 1}), values, 1e-9).fitted_bounds;
   const double error = std::sqrt(0.75 * 0.25 / 4000);
   EXPECT_NEAR(share.low, 0.75 - 1.96 * error, 0.2 * error);
   EXPECT_NEAR(share.high, 0.75 + 1.96 * error, 0.2 * error);
@@ -176,17 +176,17 @@ TEST(WeibullFit, TheSameSeedGivesTheSameBits) {
   test::Numbers numbers(8);
   std::vector<double> values = drawn({1.3, 1.5}, 50, numbers);
   values.insert(values.end(), 20, 0.0);
-  const WeibullFit a = fit_weibull(values, {50, 4, 0.95}), b = fit_weibull(values, {50, 4, 0.95});
+  const WeibullFit a = fit_weibull(values, {50, 4}), b = fit_weibull(values, {50, 4});
   EXPECT_EQ(a.shape.low, b.shape.low);
   EXPECT_EQ(exceedance(a, values, 1.0).fitted_bounds.low, exceedance(b, values, 1.0).fitted_bounds.low);
-  EXPECT_NE(a.shape.low, (fit_weibull(values, {50, 5, 0.95}).shape.low));
+  EXPECT_NE(a.shape.low, (fit_weibull(values, {50, 5}).shape.low));
 }
 
 /// Nothing above the limit in 60 values: the empirical bound is the closed form 1 - 0.025^(1/60).
 TEST(Exceedance, SaysTheObservedShareToo) {
   test::Numbers numbers(9);
   const std::vector<double> values = drawn({2.0, 1.0}, 60, numbers);
-  const Exceedance e = exceedance(fit_weibull(values, {50, 1, 0.95}), values, 100.0);
+  const Exceedance e = exceedance(fit_weibull(values, {50, 1}), values, 100.0);
   EXPECT_EQ(e.observed, 0.0);
   EXPECT_EQ(e.observed_bounds.low, 0.0);
   EXPECT_NEAR(e.observed_bounds.high, 1.0 - std::pow(0.025, 1.0 / 60.0), 1e-12);

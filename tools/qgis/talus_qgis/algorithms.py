@@ -459,10 +459,9 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         return self._label(p), tr(" (under Advanced Parameters)") if advanced else ""
 
     def _phases(self, parameters):
-        phases = self.table["phases"]
-        if self.table["command"] == "hazard" and not parameters.get("OBJECTS") and not parameters.get("FREQUENCY"):
-            return ["evaluate", "write"]
-        return phases
+        if self.table["command"] == "hazard" and not parameters.get("OBJECTS"):
+            return ["simulate" if parameters.get("FREQUENCY") else "evaluate", "write"]
+        return self.table["phases"]
 
     def _folder(self, parameters, context):
         """The folder of the results; for a command without one, a new one for what has to be written for it."""

@@ -23,7 +23,6 @@ struct HazardRecord {
   bool curves = false;      ///< hazard_curves.tif was asked for
   std::string objects_file;
   GivenFrequencies frequency;  ///< another weighting than the run's
-  bool replayed = false;       ///< the plan was run again, for the objects or the weighting
   std::vector<std::string> warnings, files;
 };
 

@@ -9,6 +9,8 @@ namespace talus {
 
 /// How a warning about block sizes, or about a ground that was fitted to no data, begins, in run.json, too.
 inline constexpr std::string_view kSizeWarning = "block sizes: ", kGuessWarning = "first guess: ";
+/// How the warning about sizes to which the ground was not fitted begins.
+inline constexpr std::string_view kOtherSizes = "block sizes: diameters are ";
 
 /// Smallest and largest diameter of the blocks at their release [m]. The scenario must be valid.
 Range diameters_of(const Scenario& scenario);
