@@ -174,6 +174,7 @@ void write_results(const ResultSource& source, Observer& observer, Stopwatch& wa
   malloc_trim(0);  // frees the memory of the workers' batches before the maps need it
   const LoadedScenario& loaded = source.loaded;
   const std::filesystem::path& folder = source.folder;
+  record.folder = std::filesystem::absolute(source.final_folder).lexically_normal().string();
   record.touched_cells = source.tally.touched_cells();
   observer.stage("writing the results");
   StopFigures stops = write_maps_and_vectors(source, observer, record);

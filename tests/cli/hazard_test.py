@@ -3,6 +3,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -232,6 +233,27 @@ class Hazard(OneThread, KeptRuns, Case):
         self.assertAlmostEqual(total["events_per_year"], 7.0, 6)
         self.run_well("hazard", self.path("out"), "--overwrite", "-q")
         self.assertNotIn("frequency", self.read_json("out/hazard.json"))
+
+    def test_a_project_that_was_moved(self):
+        """Results and inputs keep their places to each other: the plan is repeated from the new ones, if they hold the same."""
+        old, new = self.path("project"), self.path("moved here")
+        os.makedirs(old + "/inputs")
+        for name in ("dem.tif", "sources.gpkg", "s.toml"):
+            shutil.copy(self.path(name), old + "/inputs")
+        write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A"])], [("name", ogr.OFTString)])
+        self.run_well("run", old + "/inputs/s.toml", "-o", old + "/out", "-q")
+        objects = ["hazard", new + "/out", "--objects", self.path("houses.gpkg"), "--overwrite", "-q"]
+        os.rename(old, new)
+        self.run_well(*objects)
+        first = self.read_table("moved here/out/objects.csv")
+        shutil.copytree(new + "/inputs", self.path("elsewhere"))
+        write_dem(new + "/inputs/dem.tif", heights(60, 60, 5.0) + 1.0, 5.0)
+        self.fails(2, "has changed since the run", arguments=objects)
+        shutil.rmtree(new + "/inputs")
+        self.fails(2, "no such file", "correct their paths in this file", arguments=objects)
+        os.rename(self.path("elsewhere"), new + "/inputs")
+        self.run_well(*objects)
+        self.assertEqual(self.read_table("moved here/out/objects.csv"), first)
 
     def classes_run(self, out, *more):
         """A run of which half of the blocks drawn are small, but 9 of 10 events, 1 event per year in all."""

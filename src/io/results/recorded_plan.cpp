@@ -20,11 +20,13 @@ struct RecordedPlan {
   std::string checksum;  // of one round
   std::uint32_t rounds = 1;
   std::string record;  // name of the file that says so
+  std::string folder;  // where it lay when it was written; empty: not known
 };
 
-LoadedScenario load(const std::string& file) {
+LoadedScenario load(const std::string& file, const std::optional<RecordedPlan>& plan) {
   RunFlags flags;
   flags.scenario = file;
+  if (plan) flags.recorded_in = plan->folder;
   return load_scenario(flags);
 }
 
@@ -45,7 +47,7 @@ std::optional<RecordedPlan> plan_in(const fs::path& folder) {
     const auto read = [&]() -> std::optional<RecordedPlan> {
       const Json json = read_record(file);
       if (!json.contains("plan")) return std::nullopt;
-      RecordedPlan plan{json.at("plan"), 1, name};
+      RecordedPlan plan{json.at("plan"), 1, name, json.value("folder", "")};
       if (plan.record == "run.json" && json.contains("rounds"))  // the scenario of a part is that of one round
         plan.rounds = static_cast<std::uint32_t>(whole_number(json["rounds"].at("done"), 1, kMostRounds));
       return plan;
@@ -62,8 +64,8 @@ std::optional<RecordedPlan> plan_in(const fs::path& folder) {
 
 LoadedScenario recorded_plan(const fs::path& folder, const std::string& plan) {
   const std::string scenario = (folder / "scenario.toml").string();
-  LoadedScenario loaded = load(scenario);
-  require_same(loaded, {plan, 1, "run.json"}, scenario);
+  LoadedScenario loaded = load(scenario, plan_in(folder));
+  require_same(loaded, {plan, 1, "run.json", {}}, scenario);
   return loaded;
 }
 
@@ -71,7 +73,7 @@ LoadedScenario recorded_or_own_plan(const std::string& scenario) {
   const fs::path file(scenario);
   std::optional<RecordedPlan> plan;
   if (file.filename() == "scenario.toml") plan = plan_in(file.parent_path());
-  LoadedScenario loaded = load(scenario);
+  LoadedScenario loaded = load(scenario, plan);
   if (plan) require_same(loaded, *plan, scenario);
   return loaded;
 }

@@ -182,6 +182,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["program"] = "talus";
   json["version"] = version();
   json["command"] = record.command;
+  if (!record.folder.empty()) json["folder"] = record.folder;
   if (!record.plan.empty()) json["plan"] = record.plan;
   json["status"] = too_many_limits(totals) ? "too many trajectories ended at a limit" : kComplete;
   json["seed"] = scenario.seed;

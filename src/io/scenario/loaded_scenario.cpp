@@ -16,6 +16,7 @@
 #include "talus/base/input_faults.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/gdal/layer_name.hpp"
 #include "talus/io/gdal/lines.hpp"
 #include "talus/io/gdal/vectors.hpp"
 #include "talus/io/gdal/zones.hpp"
@@ -26,6 +27,20 @@
 namespace talus::io {
 
 namespace {
+
+/// Names the files that were moved together with the results (`RunFlags::recorded_in`) by their new places.
+void follow(ScenarioSpec& spec, const RunFlags& flags) {
+  namespace fs = std::filesystem;
+  if (flags.recorded_in.empty()) return;
+  const fs::path now = fs::absolute(flags.scenario).parent_path();
+  for (const auto& [role, file] : spec.inputs()) {
+    const std::string path = file_of_layer(file->path);
+    std::error_code none;
+    if (path.empty() || fs::exists(path, none)) continue;
+    const fs::path moved = (now / fs::path(path).lexically_relative(flags.recorded_in)).lexically_normal();
+    if (fs::exists(moved, none)) file->path = same_layer_in(moved.string(), file->path);
+  }
+}
 
 // Adds a fault for each file that is not there, before any is opened.
 void check_files(const ScenarioSpec& spec, std::vector<std::string>& faults) {
@@ -201,6 +216,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
                              int threads) {
   std::vector<std::string> faults;
   ScenarioSpec spec = read_spec(flags, faults);
+  follow(spec, flags);
   check_files(spec, faults);
   stop_at_faults(faults, all_faults);
 

@@ -4,16 +4,30 @@
 
 namespace talus::io {
 
-std::vector<std::pair<std::string, const NamedFile*>> ScenarioSpec::inputs() const {
-  std::vector<std::pair<std::string, const NamedFile*>> files{
-      {"scenario", &scenario}, {"include", &include}, {"dem", &dem},          {"sources", &sources},
-      {"ground", &ground},     {"screens", &screens}, {"barriers", &barriers}};
-  for (const auto& [name, effect] : effects) {
+namespace {
+
+/// The files that a scenario names, with their roles. @tparam Spec  ScenarioSpec, const or not
+template <class Spec>
+auto named_files(Spec& spec) {
+  std::vector<std::pair<std::string, decltype(&spec.dem)>> files{
+      {"scenario", &spec.scenario}, {"include", &spec.include}, {"dem", &spec.dem},          {"sources", &spec.sources},
+      {"ground", &spec.ground},     {"screens", &spec.screens}, {"barriers", &spec.barriers}};
+  for (auto& [name, effect] : spec.effects) {
     files.emplace_back("effects." + name, &effect.file);
-    for (const auto& [key, map] : effect.maps) files.emplace_back("effects." + name + "." + key, &map);
+    for (auto& [key, map] : effect.maps) files.emplace_back("effects." + name + "." + key, &map);
   }
   std::erase_if(files, [](const auto& file) { return file.second->path.empty(); });
   return files;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, const NamedFile*>> ScenarioSpec::inputs() const {
+  return named_files(*this);
+}
+
+std::vector<std::pair<std::string, NamedFile*>> ScenarioSpec::inputs() {
+  return named_files(*this);
 }
 
 }  // namespace talus::io

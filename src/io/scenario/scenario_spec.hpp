@@ -85,6 +85,7 @@ struct ScenarioSpec {
 
   /// The files that it names, with their roles in run.json: "dem", "effects.forest-stems.density".
   std::vector<std::pair<std::string, const NamedFile*>> inputs() const;
+  std::vector<std::pair<std::string, NamedFile*>> inputs();
 
   std::string origin(const std::string& key) const {
     const auto found = origins.find(key);

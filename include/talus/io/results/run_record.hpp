@@ -46,6 +46,7 @@ struct GullyRecord {
 /// Record of a run.
 struct RunRecord {
   std::vector<std::string> command;  ///< words of the command line
+  std::string folder;                ///< of the results, absolute; empty: not recorded
   Totals totals;
   std::vector<std::string> warnings;  ///< those of the input and those of the result
   std::vector<std::string> files;     ///< written beside run.json

@@ -40,6 +40,9 @@ struct RunFlags {
   std::optional<std::uint64_t> seed;
   std::vector<std::string> fields;  ///< "diameter=Durchmesser": names of fields of the sources
   bool energy_total = false, bounds = false;
+  /// Folder in which the results lay whose scenario this is; empty: it is read as it stands. A file that is gone is taken
+  /// from where it lies now if it was moved together with them; the caller compares what the files hold.
+  std::string recorded_in;
 };
 
 /// Reads and checks everything. Throws InputError, one line; `all_faults` gets every fault of the settings (for
