@@ -678,6 +678,34 @@ class FromPython(Case):
         with open(given, "rb") as file:
             self.assertEqual(file.read(), before)
         self.assertEqual(QgsVectorLayer(given, "", "ogr").featureCount(), some.featureCount())
+        self.assertEqual(len(self.written("out_inputs/*")), 1)  # nothing of what was refused
+
+    def test_no_inputs_are_left_of_a_run_that_is_refused(self):
+        log = Log()
+        _, good = self.run_algorithm("run", self.inputs(SOURCES=self.cliffs_in_memory(), THRESHOLDS="30,x"), log)
+        self.assertFalse(good)
+        self.assertIn("--thresholds", log.textLog())
+        self.assertEqual(self.written("out*"), [])
+
+    def test_choices_by_their_numbers(self):
+        """As QGIS lists them for scripts; the text of a choice is the usual way."""
+        _, good = self.run_algorithm("run", self.inputs(PRESET=5, SURFACE="1"))
+        self.assertTrue(good)
+        settings = {s["key"]: s["value"] for s in self.record()["settings"]}
+        self.assertEqual(settings["surface"], "bilinear")
+        self.assertIn("forest-road-3d", str(settings))
+        algorithm = QgsApplication.processingRegistry().createAlgorithmById("talus:run")
+        good, message = algorithm.checkParameterValues(self.inputs(PRESET=99), QgsProcessingContext())
+        self.assertFalse(good)
+        self.assertIn("PRESET", message)
+
+    def test_pits_of_a_check_are_loaded(self):
+        results, good = self.run_algorithm("check", self.inputs(PITS=self.path("pits.gpkg"), OUT=None))
+        self.assertTrue(good)
+        self.assertTrue(QgsVectorLayer(results["PITS"], "", "ogr").isValid())
+        results, good = self.run_algorithm("check", self.inputs(OUT=None))
+        self.assertTrue(good)
+        self.assertEqual(results, {})
 
     def test_cancel_while_a_layer_is_written(self):
         from talus_qgis import layers

@@ -52,7 +52,7 @@ ALGORITHMS = [
      "rasters": RUN_RASTERS, "vectors": ["stops", "trajectories"], "files": {"record": "run.json",
                                                                               "complete-scenario": "scenario.toml"}},
     {"id": "check", "command": "check", "help": "prepare-data", **SCENARIO_INPUTS, "phases": [],
-     "advanced": SCENARIO_INPUTS["advanced"] | {"overwrite"}},
+     "advanced": SCENARIO_INPUTS["advanced"] | {"overwrite"}, "geopackage": ("pits", ["pits"])},
     {"id": "sources", "command": "sources", "help": "sources", "bands": {"dem"}, "order": ["dem", "slope", "out"], "phases": [],
      "geopackage": ("out", ["source_polygons", "source_points"])},
     {"id": "hazard", "command": "hazard", "help": "hazard", "order": ["folder", "width", "curves", "objects", "width-field", "name-field", "overwrite"],
@@ -95,6 +95,12 @@ def _is_number(text):
     except ValueError:
         return False
     return "_" not in text
+
+
+def _choice(p, value):
+    """The text of a choice that may be given by its number in the list, as QGIS lists choices for scripts."""
+    texts = p["choices"]
+    return texts[int(value)] if str(value).isdigit() and value not in texts and int(value) < len(texts) else value
 
 
 def _is_temporary(value):
@@ -323,6 +329,9 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         for key in map(key_of, self.table.get("several", ())):  # a script may still give the selected features of one layer
             if isinstance(given.get(key), QgsProcessingFeatureSourceDefinition):
                 given[key] = given[key].source.staticValue()
+        for p in self.described():
+            if p["type"] == "choice" and given.get(key_of(p["name"])) not in (None, ""):
+                given[key_of(p["name"])] = _choice(p, given[key_of(p["name"])])
         return super().checkParameterValues(given, context)
 
     def _fault_of_names(self, parameters):
@@ -412,7 +421,9 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if self.table.get("folder") == "out" and self._is_in_temporary(folder):
             feedback.pushWarning(tr("The results go into a temporary folder, which QGIS removes when it is closed: name a folder "
                                     "under \"Results\" to keep them."))
-        words = self._words(parameters, context, feedback, layers.folder_beside(folder))
+        inputs = layers.folder_beside(folder)
+        before = layers.names_in(inputs)
+        words = self._words(parameters, context, feedback, inputs)
         rounds = self.parameterAsInt(parameters, "ROUNDS", context) if parameters.get("ROUNDS") else 1
         begin = time.time()
         progress = process.Progress(feedback, self._phases(parameters), None if parameters.get("UNTIL_ERROR") else rounds)
@@ -420,6 +431,9 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             process.run(command + words, feedback, progress, self._explained)
         except process.Cancelled as cancelled:
             raise QgsProcessingException(f"{cancelled} {self._after_cancel(folder)}".strip()) from cancelled
+        except process.Refused:
+            layers.remove_others(inputs, before)
+            raise
         return self._results(parameters, context, folder, begin)
 
     @staticmethod
@@ -532,7 +546,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if kind == "number":
             return [repr(self.parameterAsDouble(parameters, key, context))]
         if kind == "choice":
-            return [self.parameterAsEnumString(parameters, key, context)]
+            return [self.parameterAsEnumString({key: _choice(p, parameters[key])}, key, context)]
         if p["name"] in self.table.get("field of", ()):
             return [self._column(parameters, key, self.table["field of"][p["name"]], context)]
         if p["repeatable"] and kind == "file":
@@ -599,6 +613,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
     def _geopackage_results(self, parameters, context):
         name, names = self.table["geopackage"]
         path = self._destination(parameters, key_of(name), context)
+        if not path:
+            return {}
         found = {key_of(name): path, **{key_of(layer): f"{path}|layername={layer}" for layer in names}}
         if self.parameterAsBool(parameters, "LOAD", context):
             rows = [(f"{path}|layername={layer}", results.title_of(layer), os.path.basename(path), i, i == 0)

@@ -10,6 +10,7 @@ import filecmp
 import hashlib
 import math
 import os
+import shutil
 import tempfile
 from contextlib import contextmanager
 
@@ -28,6 +29,19 @@ READ_AS_THEY_ARE = (".gpkg", ".shp", ".geojson", ".json", ".fgb")
 
 def folder_beside(results):
     return os.path.normpath(results) + "_inputs"
+
+
+def names_in(inputs):
+    """What lies in a folder of inputs."""
+    return set(os.listdir(inputs)) if os.path.isdir(inputs) else set()
+
+
+def remove_others(inputs, names):
+    """Removes what has come into a folder of inputs since it held `names`; the folder, too, if it is empty then."""
+    for name in names_in(inputs) - names:
+        shutil.rmtree(os.path.join(inputs, name))
+    if os.path.isdir(inputs) and not os.listdir(inputs):
+        os.rmdir(inputs)
 
 
 def plain_vector(value, layer):

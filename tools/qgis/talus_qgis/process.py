@@ -18,11 +18,16 @@ from .program import HIDDEN_WINDOW
 from .texts import tr
 
 POLL = 0.1      # s between two looks at the button Cancel
+REFUSED = 2      # exit code of the program
 PATIENCE = 20.0  # s until a program that was asked to end is ended by force; a run ends within 2 s
 
 
 class Cancelled(QgsProcessingException):
     """The user has ended the program before its end."""
+
+
+class Refused(QgsProcessingException):
+    """The program has refused its input, and written nothing."""
 
 
 class Progress:
@@ -214,4 +219,4 @@ def run(command, feedback, progress, explain=str):
         return  # whatever was asked in its last moments, it has written its results
     if feedback.isCanceled():
         raise Cancelled(tr("Cancelled."))
-    raise QgsProcessingException(messages.error or tr("talus ended with code {code}").format(code=code))
+    raise (Refused if code == REFUSED else QgsProcessingException)(messages.error or tr("talus ended with code {code}").format(code=code))

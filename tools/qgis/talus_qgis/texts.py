@@ -136,6 +136,7 @@ KEYS = {
     "phase diagnose": ("Diagnosing", "Diagnose"),
     # titles of layers that are not in talus.qgs
     "title vertices": ("Vertices of the paths", "Stützpunkte der Bahnen"),
+    "title pits": ("Pits", "Mulden"),
     "title source_polygons": ("Candidate sources", "Mögliche Ausbruchgebiete"),
     "title source_points": ("Candidate source cells", "Mögliche Ausbruchzellen"),
 }
