@@ -29,7 +29,7 @@ class Design(Case):
         os.mkdir(self.path("out"))
         screens = [{"id": name, "lines": [[[WEST, SOUTH], [WEST + 100.0, SOUTH]]]} for name in ("road", "fe/nce", "low")]
         self.write("out/run.json", json.dumps({
-            "released": 1000, "screens": screens, "inputs": [],
+            "released": 1000, "screens": screens, "inputs": [], "effects": [],
             "grid": {"columns": 60, "rows": 60, "cell_x_m": 5.0, "cell_y_m": 5.0, "west": WEST, "north": NORTH, "crs_wkt": ""},
             "settings": [{"key": "blocks.density", "value": 2500, "unit": "kg/m3", "source": "scenario"}]}))
         self.rows = [(0, i, "road", 5.0 + 0.1 * i, 0.01 * (i + 1), 3000.0 if i < 100 else 5000.0, 10.0 + 0.2 * i)

@@ -159,10 +159,6 @@ class Effects(Case):
                 self.assertIn("warning: " + note, hazard)
                 self.assertIn("note: " + note, design)
                 self.assertIn(f"<td>Forest</td><td class='b'>forest or other vegetation stood in the run ({name})</td>", page)
-                record = self.read_json(name + "/run.json")
-                del record["effects"]  # as earlier versions wrote it: the settings say which effects there were
-                self.write(name + "/run.json", json.dumps(record))
-                self.assertIn("note: " + note, self.run_well("barrier", self.path(name), "--screen", "road").stdout)
 
     def test_drag_that_holds_small_blocks_in_the_air_is_said(self):
         """c/m above 4 1/s; a block of 0.8 m and 2700 kg/m3 has m = 2700 pi/6 0.8^3 kg."""

@@ -149,7 +149,7 @@ class SpecialFiles(Scenario):
         self.refused("is a pipe", arguments=["merge", self.path("out"), self.path("run")])
         os.remove(self.path("run/run.json"))
         self.write("run/run.json", json.dumps({
-            "released": 10, "grid": {"cell_x_m": 5.0}, "screens": [{"id": "a", "lines": [[[0, 0], [1, 1]]]}],
+            "released": 10, "effects": [], "grid": {"cell_x_m": 5.0}, "screens": [{"id": "a", "lines": [[[0, 0], [1, 1]]]}],
             "settings": [{"key": "blocks.density", "value": 2500}]}))
         self.refused("is a pipe", arguments=["barrier", self.path("run"), "--screen", "a"])
 

@@ -118,26 +118,6 @@ TEST_F(HazardFile, DamagedForeignOrLaterFilesAreRefused) {
   refused("", "is");
 }
 
-/// A file of the format before, of 5 blocks of 1 m and 0.1 events per year each: run.json beside it said 154.856 m of
-/// paths in plan.
-TEST_F(HazardFile, ReadsTheFormatBefore) {
-  double length = 0.0, by_diameter = 0.0;
-  HazardRules rules{EnergyBins({30.0, 300.0}), {}};
-  const HazardHeader header = read_hazard(
-      TALUS_SOURCE_DIR "/tests/cases/hazard_format_2.gz", [&](const HazardHeader& h) { rules = h.rules; },
-      [&](const HazardRow& row) {
-        for (const auto& [column, cell, exit] : row.touched) {
-          const PassageDensity density = densities_of(cell, rules.scale, 1.0).front();
-          length += density.length;
-          by_diameter += density.by_diameter;
-        }
-      });
-  EXPECT_EQ(header.rules.scale.room, 1.0);
-  EXPECT_EQ(header.rules.scale.trajectories, 5U);
-  EXPECT_NEAR(length, 0.1 * 154.856, 1e-4);
-  EXPECT_NEAR(by_diameter, 0.1 * 154.856, 1e-4);
-}
-
 TEST_F(HazardFile, ThePlanChangesWithEverySetting) {
   const LoadedScenario other = of_law("[frequency]\npower_law = { A = 0.2, b = 0.5 }\n");
   EXPECT_NE(plan_checksum(other), plan_checksum(loaded_));

@@ -44,6 +44,7 @@ int score_model(const Options& options) {
   talus::ObserveOptions how;
   how.trials = options.trials;
   how.seed = options.seed;
+  how.first_trial = talus::kUnseen;  // as the errors of talus calibrate
   how.threads = options.threads;
   how.proceed = [] { return !interrupted(); };
   if (options.rows != "all")

@@ -26,7 +26,6 @@ struct CheckedRun {
   const ScreensPart& screens;
   const std::optional<FitPart>& fit;
   bool has_frequencies;              ///< the sources say how often blocks fall
-  std::optional<std::string> low_c;  ///< `coefficient_note`
 };
 
 /// "Before you sign": every point, in the order of the README.

@@ -102,6 +102,7 @@ RunFacts facts_of(const Json& json) {
   run.plan = json.value("plan", "");
   run.plan_of_hazard = json.contains("rounds") ? json.at("rounds").value("plan", "") : run.plan;
   run.of_profile = is_of_profile(json);
+  run.deformation_coefficient = number_of(json, "deformation_coefficient");
   read_counts(json, run);
   run.left_into_gaps = number_of(json, "left_into_gaps");
   run.left_with_pieces = number_of(json, "left_with_pieces");

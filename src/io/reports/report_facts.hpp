@@ -50,7 +50,7 @@ struct RunFacts {
   bool of_profile = false;     ///< of `talus profile`
   std::string written;         ///< day of the file run.json, "2026-11-23": a copy may have a later one
   double released = 0.0, source_cells = 0.0, per_source = 0.0, rounds = 0.0, impacts = 0.0, kilometres = 0.0;
-  double touched_cells = 0.0;
+  double touched_cells = 0.0, deformation_coefficient = 0.0;
   std::optional<std::pair<double, double>> diameters;  ///< of the smallest and the largest block [m]; earlier: nothing
   std::vector<std::pair<std::string, double>> ends;  ///< in the order of the record
   std::optional<std::array<double, 3>> energy_line;  ///< least, P5, P50 [deg]

@@ -18,6 +18,7 @@
 #include "talus/base/version.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/files/staged_path.hpp"
+#include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/run_folder.hpp"
 
 namespace talus::io {
@@ -35,9 +36,8 @@ struct RunReport {
   ObjectsPart objects;
   std::optional<FitPart> fit;
   bool has_frequencies = false;
-  std::optional<std::string> low_c;
 
-  CheckedRun checked() const { return {run, hazard, sheet, screens, fit, has_frequencies, low_c}; }
+  CheckedRun checked() const { return {run, hazard, sheet, screens, fit, has_frequencies}; }
 };
 
 RunReport read_report(const fs::path& folder) {
@@ -49,8 +49,7 @@ RunReport read_report(const fs::path& folder) {
   report.barriers = read_barrier_parts(folder, report.hazard);
   report.objects = read_objects_part(folder);
   report.fit = read_fit_part(report.run);
-  report.has_frequencies = fs::exists(folder / "hazard_tally.gz");
-  report.low_c = coefficient_note(folder);
+  report.has_frequencies = fs::exists(folder / kHazardFile);
   return report;
 }
 

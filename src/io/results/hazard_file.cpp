@@ -23,7 +23,6 @@ constexpr unsigned kTerrain = 1, kTouched = 2, kExit = 4;
 
 constexpr const char* kMark = "talus-hazard";
 constexpr int kFormat = 3;
-constexpr int kNarrowFormat = 2;  // read as well: sums of lengths in 64 bits, no room for rounds
 constexpr std::size_t kMostThresholds = 32;
 constexpr double kMostPerByte = 1040.0;  // bytes that one byte of a gzip file can hold
 
@@ -86,7 +85,7 @@ HazardHeader header_of(const std::string& text) {
                         json.at("equal"),
                         0.0};
   header.rules.scale.largest_diameter = json.at("largest_diameter");
-  header.rules.scale.room = json.value("room", 1.0);
+  header.rules.scale.room = json.at("room");
   if (!is_possible(header)) throw std::out_of_range("a number");
   return header;
 }
@@ -102,12 +101,12 @@ void put_cell(HazardWriter& out, const HazardCell& cell) {
     for (const WideSum& sum : {sums.length, sums.by_diameter, sums.squares}) out.put(sum.low), out.put(sum.high);
 }
 
-WideSum get_sum(HazardReader& in, int format) {
+WideSum get_sum(HazardReader& in) {
   const auto low = in.get<std::uint64_t>();
-  return {low, format == kNarrowFormat ? 0 : in.get<std::uint64_t>()};
+  return {low, in.get<std::uint64_t>()};
 }
 
-HazardCell get_cell(HazardReader& in, const HazardRules& rules, int format) {
+HazardCell get_cell(HazardReader& in, const HazardRules& rules) {
   const auto first = in.get<std::int32_t>();
   std::vector<HazardCell::Bin> bins(in.get_count(static_cast<std::size_t>(rules.bins.count())));
   if (first < 0 || first + static_cast<std::int64_t>(bins.size()) > rules.bins.count()) in.fail();
@@ -115,22 +114,20 @@ HazardCell get_cell(HazardReader& in, const HazardRules& rules, int format) {
   std::vector<std::int64_t> overlaps(in.get_count(rules.levels()));
   for (std::int64_t& overlap : overlaps) overlap = in.get<std::int64_t>();
   std::vector<WeightedLengths> lengths(in.get_count(rules.levels()));
-  for (WeightedLengths& sums : lengths) sums = {get_sum(in, format), get_sum(in, format), get_sum(in, format)};
+  for (WeightedLengths& sums : lengths) sums = {get_sum(in), get_sum(in), get_sum(in)};
   return HazardCell::restored(first, bins, overlaps, lengths);
 }
 
-/// Reads the mark and the format.
-int get_format(HazardReader& in) {
+/// Reads the mark and the format. Throws InputError for others.
+void check_format(HazardReader& in) {
   std::string mark(std::strlen(kMark), ' ');
   in.get(mark.data(), mark.size());
   if (mark != kMark) throw InputError(in.name() + ": is no file that talus run wrote; give the folder of a run");
   const auto format = in.get<std::int32_t>();
-  if (format != kFormat && format != kNarrowFormat)
+  if (format != kFormat)
     throw InputError(in.name() + ": was written by " + (format > kFormat ? "a later" : "an earlier") +
                      " version of Talus (format " + std::to_string(format) + ", this one reads " +
-                     std::to_string(kNarrowFormat) + " and " + std::to_string(kFormat) +
-                     "); use that version, or run again");
-  return format;
+                     std::to_string(kFormat) + "); use that version, or run again");
 }
 
 /// Reads the length of the header, and the header.
@@ -173,7 +170,7 @@ void write_hazard(const std::filesystem::path& file, const LoadedScenario& loade
 HazardHeader read_hazard(const std::filesystem::path& file, const std::function<void(const HazardHeader&)>& begin,
                          const std::function<void(const HazardRow&)>& visit) {
   HazardReader in(file);
-  const int format = get_format(in);
+  check_format(in);
   const HazardHeader header = get_header(in);
   const double least =
       static_cast<double>(header.grid.columns) * header.grid.rows;  // bytes: each cell has one byte at least
@@ -187,8 +184,7 @@ HazardHeader read_hazard(const std::filesystem::path& file, const std::function<
     for (const std::uint8_t state : states) cells.terrain.push_back((state & kTerrain) != 0);
     for (std::size_t column = 0; column < states.size(); ++column)
       if ((states[column] & kTouched) != 0)
-        cells.touched.push_back(
-            {static_cast<int>(column), get_cell(in, header.rules, format), (states[column] & kExit) != 0});
+        cells.touched.push_back({static_cast<int>(column), get_cell(in, header.rules), (states[column] & kExit) != 0});
     visit(cells);
   }
   in.finish();

@@ -115,11 +115,6 @@ std::vector<std::string> notes_of_run(const std::filesystem::path& folder, const
   });
 }
 
-std::optional<std::string> coefficient_note(const std::filesystem::path& folder) {
-  const Json run = read_record_or_nothing(folder / "run.json");
-  return run.is_object() ? recorded_coefficient_note(run) : std::nullopt;
-}
-
 std::optional<std::string> coefficient_note(double c, bool of_profile) {
   constexpr double kLowC = 0.15;  // the SEL of the paper's Table 4 asks for 0.09 to 0.16
   if (!(c > kLowC)) return std::nullopt;

@@ -23,12 +23,11 @@ struct ResultsUse {
 /// None if there is no run.json that can be read. Throws InputError if it is none of a run.
 std::vector<std::string> notes_of_run(const std::filesystem::path& folder, const ResultsUse& use);
 
-/// One line that energies rest on c (model.deformation_coefficient), and which way is safe; nothing if c is low. With a
-/// folder: of its run.json, nothing if it has none. docs/barrier.md, "The value of c".
+/// One line that energies rest on c (model.deformation_coefficient), and which way is safe; nothing if c is low.
+/// docs/barrier.md, "The value of c".
 ///
 /// @param of_profile  the run is of `talus profile`, which takes c from its file alone
 std::optional<std::string> coefficient_note(double c, bool of_profile = false);
-std::optional<std::string> coefficient_note(const std::filesystem::path& folder);
 
 /// "2 barriers stood in the run and caught 3335 blocks"; "blocks and pieces" if blocks broke.
 /// @param caught  their number as text
