@@ -68,7 +68,7 @@ FamilyTest block_property(std::span<const BlockNumbers> sites, const FamilyOptio
   const PermutationTest& permuted = test.regression.permuted;
   family.p_value = permuted.p_value;
   family.note += (family.may_name ? "" : "; ") + permutations_note(permuted, units_word(test));
-  if (permuted.exact && kLeastRare * static_cast<double>(permuted.arrangements) < 1.0) {
+  if (family.may_name && permuted.exact && kLeastRare * static_cast<double>(permuted.arrangements) < 1.0) {
     family.may_name = false;
     family.note += ", of which none could be rare: a property of the block cannot be named from them";
   }

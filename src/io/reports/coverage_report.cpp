@@ -80,13 +80,17 @@ std::string meaning(std::size_t i, bool too_many) {
 
 }  // namespace
 
+std::string leaving_text(const LeavingTest& t) {
+  return "by the model " + with_decimals(t.expected, 1) + " of " + std::to_string(t.blocks) +
+         " blocks leave the DEM, " + (t.missing == 0 ? "none did" : "at most " + std::to_string(t.missing) + " did") +
+         ": p " + with_digits(t.p_value, 2);
+}
+
 std::string leaving_sentence(const ScoredRows& scored) {
   const LeavingTest& t = scored.leaving_trials;
   if (std::isnan(t.p_value) || !(t.expected > 0.0) || t.missing == t.blocks) return {};
-  return rows_in_words(scored.rows) + " rows: by the model " + with_decimals(t.expected, 1) + " of " +
-         std::to_string(t.blocks) + " blocks leave the DEM, " +
-         (t.missing == 0 ? "none did" : "at most " + std::to_string(t.missing) + " did") + " (p " +
-         with_digits(t.p_value, 2) + ")" + (t.missing == 0 ? "" : "; run-outs are compared with trials that stay");
+  return rows_in_words(scored.rows) + " rows: " + leaving_text(t) +
+         (t.missing == 0 ? "" : "; run-outs are compared with trials that stay");
 }
 
 std::string coverage_lines(const ScoredRows& scored) {
@@ -207,9 +211,6 @@ std::vector<std::string> coverage_warnings(const ScoredRows& scored) {
                          whole_percent(kCoverageShares[i]) + " % should: " + meaning(i, too_many) + " (p " +
                          with_digits(c.below[i].corrected, 2) + " after correction)");
     }
-  if (scored.leaving_trials.p_value < kWrongSpread)
-    warnings.push_back(leaving_sentence(scored) +
-                       ": the ground lets blocks go too far, or the DEM is too small or has gaps there");
   return warnings;
 }
 

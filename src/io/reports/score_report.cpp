@@ -142,6 +142,25 @@ std::vector<std::string> measured_but_not_scored(const Campaign& campaign, const
   return std::move(uncounted.names);
 }
 
+/// Says that blocks leave the DEM in the model, and what that does to a fit; empty where few do.
+std::string leaving_warning(const ScoredRows& s) {
+  const std::string blocks =
+      std::to_string(s.leaving) + " of " + std::to_string(s.blocks) + " " + rows_in_words(s.rows) + " ";
+  if (s.deposits)
+    return s.leaving == 0 ? ""
+                          : "more than half of the trials of " + blocks +
+                                "mapped blocks leave the DEM, and only those that stay are compared: the ground lets "
+                                "blocks go too far, or the DEM is too small (a fit then makes run-outs too short)";
+  const bool too_many = s.leaving_trials.p_value < kWrongSpread;
+  if (s.leaving == 0 && !too_many) return {};
+  const std::string trials = "more than a quarter of the trials leave the DEM of " + blocks +
+                             "blocks, though these came to rest on it" +
+                             (too_many ? " (" + leaving_text(s.leaving_trials) + ")" : "");
+  return (s.leaving > 0 ? trials : leaving_sentence(s)) +
+         ": the ground lets blocks go too far, or the DEM is too small or has gaps there (a fit then makes run-outs "
+         "too short)";
+}
+
 }  // namespace
 
 bool hardly_simulated(const Score& score) {
@@ -249,16 +268,7 @@ std::vector<std::string> unscored_warnings(const ScoredRows& s) {
 
 std::vector<std::string> score_warnings(const ScoredRows& s) {
   std::vector<std::string> warnings = unscored_warnings(s);
-  if (s.leaving > 0 && s.deposits)
-    warnings.push_back("more than half of the trials of " + std::to_string(s.leaving) + " of " +
-                       std::to_string(s.blocks) + " " + rows_in_words(s.rows) +
-                       " mapped blocks leave the DEM, and only those that stay are compared: the ground lets blocks go "
-                       "too far, or the DEM is too small (a fit then makes run-outs too short)");
-  else if (s.leaving > 0)
-    warnings.push_back("more than a quarter of the trials leave the DEM of " + std::to_string(s.leaving) + " of " +
-                       std::to_string(s.blocks) + " " + rows_in_words(s.rows) +
-                       " blocks, though these came to rest on it: the ground lets blocks go too far, or the DEM is too "
-                       "small or has gaps there (a fit then makes run-outs too short)");
+  if (std::string warning = leaving_warning(s); !warning.empty()) warnings.push_back(std::move(warning));
   for (std::string& warning : coverage_warnings(s)) warnings.push_back(std::move(warning));
   return warnings;
 }
