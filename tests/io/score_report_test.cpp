@@ -148,7 +148,7 @@ TEST(SkillSentence, OfFittedRowsTakesWhatTheFitGains) {
             "fitting rows: skill 28.6 % (95 %: 10.0 to 40.0 %): 0.400 against the climatology's 0.560");
   rows.fitted = 4;
   EXPECT_NE(skill_sentence(rows).find(
-                "; fitting 4 numbers to 24 blocks gains some 16.7 % on them without any skill; it may have no skill"),
+                "; fitting 4.0 free numbers to 24 blocks gains some 16.7 % on them without any skill; it may have no skill"),
             std::string::npos)
       << skill_sentence(rows);
   rows.skill.interval.low = 0.17;

@@ -47,7 +47,7 @@ void score_both(const talus::Campaign& campaign, talus::io::Calibration& c) {
     c.errors.push_back(talus::io::compared(campaign, talus::io::scored(name, campaign, before, rows),
                                            talus::io::scored(name, campaign, after, rows)));
   }
-  c.errors.front().after.fitted = c.free.size();
+  c.errors.front().after.fitted = talus::effective_numbers(c.uncertainty);
   c.comparison = talus::compare(campaign, after, all);
 }
 

@@ -70,8 +70,6 @@ class SitesFit {
 
   const std::vector<talus::Model>& start() const { return start_; }
   const std::vector<talus::Model>& models() const { return models_; }
-  /// Count of the numbers that were fitted to a site.
-  std::size_t numbers(std::size_t site) const { return free_[site].size(); }
 
  private:
   const CampaignCommand& command_;
@@ -108,7 +106,7 @@ int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how
       }};
   c.evidence = talus::io::evidence_of_sites(opened.sites, work.start(), work.models(), unseen);
   if (interrupted()) stop_interrupted();
-  for (std::size_t i = 0; i < opened.sites.size(); ++i) c.evidence[i].errors.front().after.fitted = work.numbers(i);
+  for (std::size_t i = 0; i < opened.sites.size(); ++i) c.evidence[i].errors.front().after.fitted = talus::kNotGiven;
   warn_of_sites(command, c, c.evidence);
   talus::io::write_text(opened.folder.temporary() / "calibration.json", talus::io::sites_calibration_json(c));
   talus::io::write_text(opened.folder.temporary() / "report.md", talus::io::sites_calibration_report(c));

@@ -61,4 +61,13 @@ Uncertainty uncertainty_of(const FitProblem& problem, const FitOptions& options,
   return out;
 }
 
+double effective_numbers(const Uncertainty& uncertainty) {
+  const Eigen::MatrixXd& z = uncertainty.draws;
+  if (z.rows() < 2) return 0.0;
+  const Eigen::RowVectorXd mean = z.colwise().mean();
+  const Eigen::RowVectorXd variance =
+      (z.rowwise() - mean).colwise().squaredNorm() / static_cast<double>(z.rows() - 1);
+  return (1.0 - variance.array()).max(0.0).sum();
+}
+
 }  // namespace talus

@@ -136,11 +136,7 @@ void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
   }
   record.errors.push_back(compared(campaign, scored("fit", campaign, d.base.runs, fitting),
                                    scored("fit", campaign, d.with_effects.runs, fitting)));
-  std::size_t numbers = d.base.free.size();
-  record.errors.back().before.fitted = numbers;
-  for (const DiagnosisRound& round : d.rounds)
-    if (names_effect(round.effect)) numbers += round.candidates.front().parameters.size();
-  record.errors.back().after.fitted = numbers;
+  record.errors.back().before.fitted = record.errors.back().after.fitted = kNotGiven;
   const bool held_out = std::ranges::count(rows, true) > 0;
   if (held_out || !d.nested) record.errors.push_back(compared(campaign, std::move(base), std::move(last)));
   if (d.nested) judge_nested(campaign, record);

@@ -80,7 +80,7 @@ Reduction skill_of(const Score& score, const Score& climatology, std::span<const
 /// Skill that a fit of so many numbers shows on its own rows although it has none on others: each number lowers the sum
 /// of the scores as it does in Akaike's criterion (`DiagnosisRules::price`).
 double skill_of_fit(const ScoredRows& s) {
-  return DiagnosisRules{}.price * static_cast<double>(s.fitted) / static_cast<double>(s.blocks) / s.climatology.total;
+  return DiagnosisRules{}.price * s.fitted / static_cast<double>(s.blocks) / s.climatology.total;
 }
 
 /// Number of blocks that were measured at rest, of which more than a quarter of the simulated trials leave the DEM. A
@@ -238,11 +238,12 @@ std::string skill_sentence(const ScoredRows& s) {
   if (!(s.skill.share > 0.0))
     return rows + "no skill: " + errors + ": the measurements of the " + (s.rows == "fit" ? "other " : "") +
            "fitting blocks, without any model, are " + (s.skill.interval.high < 0.0 ? "nearer" : "as near or nearer");
-  const double of_fit = skill_of_fit(s);
-  const std::string of_numbers = of_fit > 0.0 ? "; fitting " + std::to_string(s.fitted) + " numbers to " +
-                                                    std::to_string(s.blocks) + " blocks gains some " +
-                                                    with_decimals(100.0 * of_fit, 1) + " % on them without any skill"
-                                              : "";
+  const double of_fit = std::isnan(s.fitted) ? 0.0 : skill_of_fit(s);
+  std::string of_numbers;
+  if (std::isnan(s.fitted)) of_numbers = "; these rows were fitted, which lowers their error without any skill";
+  if (of_fit > 0.0)
+    of_numbers = "; fitting " + with_decimals(s.fitted, 1) + " free numbers to " + std::to_string(s.blocks) +
+                 " blocks gains some " + with_decimals(100.0 * of_fit, 1) + " % on them without any skill";
   return rows + "skill " + with_decimals(100.0 * s.skill.share, 1) + " %" + interval + ": " + errors + of_numbers +
          (s.skill.interval.low > of_fit ? "" : "; it may have no skill");
 }

@@ -14,6 +14,10 @@ struct Uncertainty {
   bool interrupted = false;
 };
 
+/// Number of free parameters, of which one that the prior holds counts for less: sum of 1 - variance of z (that of
+/// the prior is 1). On its own rows a fit gains as much as one of so many parameters without a prior.
+double effective_numbers(const Uncertainty& uncertainty);
+
 /// A parameter is called not identifiable where its 95 % interval is wider than this share of the prior's, or of the
 /// bounds where these are narrower.
 inline constexpr double kMostOfThePrior = 0.5;

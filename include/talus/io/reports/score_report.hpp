@@ -22,7 +22,9 @@ struct ScoredRows {
   Interval climatology_interval;
   Score compared;           ///< as `score`, but rows with too few simulated values score exactly as the climatology
   Reduction skill;          ///< by which the model, as `compared`, lowers the climatology's error
-  std::size_t fitted = 0;   ///< numbers that were fitted to these rows
+  /// Numbers that were fitted to these rows, those that the prior holds counted as less than one (`effective_numbers`);
+  /// NaN: some, not counted.
+  double fitted = 0.0;
   double tail_begin = 0.0;  ///< run-out beyond which the tail is scored [m]
   Score tail, tail_climatology;
   Interval tail_interval;

@@ -335,5 +335,17 @@ TEST(Calibrate, EndsWhenTold) {
   EXPECT_EQ(calls, 5);
 }
 
+/// Variances 1/4, 4 (beyond the prior) and 0: one number to three quarters, none, and one whole.
+TEST(EffectiveNumbers, CountWhatThePriorDoesNotHold) {
+  Uncertainty uncertainty;
+  uncertainty.draws = Eigen::MatrixXd::Zero(1000, 3);
+  for (Eigen::Index k = 0; k < 1000; ++k) {
+    uncertainty.draws(k, 0) = 3.0 + (k % 2 == 0 ? 0.5 : -0.5);
+    uncertainty.draws(k, 1) = k % 2 == 0 ? 2.0 : -2.0;
+  }
+  EXPECT_NEAR(effective_numbers(uncertainty), 1.75, 0.25 / 999.0 + 1e-12);
+  EXPECT_EQ(effective_numbers({}), 0.0);
+}
+
 }  // namespace
 }  // namespace talus::test
