@@ -50,4 +50,15 @@ int class_of(const HazardMatrix& matrix, std::span<const double> frequencies, bo
   return highest;
 }
 
+BoundedClass class_of(const HazardMatrix& matrix, std::span<const Bounded> frequencies) {
+  const auto side = [&](double Bounded::*member) {
+    std::vector<double> values;
+    for (const Bounded& f : frequencies) values.push_back(f.*member);
+    return values;
+  };
+  const std::vector<double> low = side(&Bounded::low), high = side(&Bounded::high);
+  const int here = class_of(matrix, side(&Bounded::value)), highest = class_of(matrix, high, false);
+  return {here, class_of(matrix, low), std::max(here, highest), class_of(matrix, low, false) != highest};
+}
+
 }  // namespace talus

@@ -25,16 +25,8 @@ void push(Figures& figures, const Bounded& bounded) {
 void push_classes(const HazardPlace& place, Figures& figures) {
   std::vector<Bounded> frequencies{place.levels[0]};
   for (const double energy : place.matrix.energies) frequencies.push_back(place.exceedance_of(energy));
-  const auto side = [&](double Bounded::*member) {
-    std::vector<double> values;
-    for (const Bounded& f : frequencies) values.push_back(f.*member);
-    return values;
-  };
-  const std::vector<double> low = side(&Bounded::low), high = side(&Bounded::high);
-  const int here = class_of(place.matrix, side(&Bounded::value)), highest = class_of(place.matrix, high, false);
-  for (const int figure :
-       {here, class_of(place.matrix, low), std::max(here, highest),
-        static_cast<int>(class_of(place.matrix, low, false) != highest), static_cast<int>(place.exit)})
+  const BoundedClass found = class_of(place.matrix, frequencies);
+  for (const int figure : {found.value, found.low, found.high, int{found.undecided}, int{place.exit}})
     figures.push_back(static_cast<float>(figure));
 }
 

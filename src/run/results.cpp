@@ -153,6 +153,7 @@ StopFigures write_maps_and_vectors(const ResultSource& source, const Observer& o
     }
   };
   auto writing = std::async(record.threads > 1 ? std::launch::async : std::launch::deferred, vectors);
+  if (record.threads <= 1) writing.wait();  // first, as they fail sooner
   const Grid& grid = source.loaded.scenario.surface.grid();
   try {
     write_maps(make_maps(source.loaded.scenario, source.tally),

@@ -1,6 +1,7 @@
 """talus hazard as a user calls it."""
 import hashlib
 import json
+import math
 import os
 import re
 import shutil
@@ -254,6 +255,23 @@ class Hazard(OneThread, KeptRuns, Case):
         os.rename(self.path("elsewhere"), new + "/inputs")
         self.run_well(*objects)
         self.assertEqual(self.read_table("moved here/out/objects.csv"), first)
+
+    def test_a_copy_of_a_project_has_files_of_its_own(self):
+        """Also where those of the first project are there and have changed since."""
+        os.makedirs(self.path("one/inputs"))
+        for name in ("dem.tif", "sources.gpkg", "s.toml"):
+            shutil.copy(self.path(name), self.path("one/inputs"))
+        self.run_well("run", self.path("one/inputs/s.toml"), "-o", self.path("one/out"), "-q")
+        shutil.copytree(self.path("one"), self.path("copy"))
+        write_dem(self.path("one/inputs/dem.tif"), heights(60, 60, 5.0) + 1.0, 5.0)
+        trace = ["--source", "1", "--block", "1"]
+        self.run_well("trace", self.path("copy/out/scenario.toml"), *trace)
+        self.fails(2, "has changed since the run", arguments=["trace", self.path("one/out/scenario.toml"), *trace])
+
+    def test_parts_of_files_keep_their_names(self):
+        self.write("part.toml", self.read_text("s.toml").replace('"dem.tif"', '"GTIFF_DIR:1:dem.tif"'))
+        self.run_well("run", self.path("part.toml"), "-o", self.path("out"), "-q")
+        self.run_well("trace", self.path("out/scenario.toml"), "--source", "1", "--block", "1")
 
     def classes_run(self, out, *more):
         """A run of which half of the blocks drawn are small, but 9 of 10 events, 1 event per year in all."""
@@ -553,6 +571,14 @@ class Hazard(OneThread, KeptRuns, Case):
             self.assertAlmostEqual(rows[name]["frequency"] * rows[name]["return_period"], 1.0)
             self.assertLessEqual(rows[name]["frequency_lower"], rows[name]["frequency"])
             self.assertLessEqual(rows[name]["frequency"], rows[name]["frequency_upper"])
+        for row in rows.values():
+            for end in ("", "_lower"):  # the matrix of docs/hazard.md, by 30, 100, 300 years; a row per intensity
+                years = [1.0 / row[f"frequency{kj}{end}"] if row[f"frequency{kj}{end}"] > 0.0 else math.inf for kj in ("", "_30", "_300")]
+                classes = [rows_of_class[sum(t > limit * (1 + 1e-9) for limit in (30, 100, 300))]
+                           for t, rows_of_class in zip(years, ((3, 2, 2, 1), (4, 3, 3, 1), (4, 4, 4, 1))) if t < math.inf]
+                self.assertEqual(row["hazard_class" + end], max(classes, default=0), (row["object"], end, years))
+            self.assertGreaterEqual(row["hazard_class_upper"], row["hazard_class"])
+        self.assertGreater(rows["A"]["hazard_class"], rows["C"]["hazard_class"])
         # Every cell that a house wholly covers is crossed less often than the house is hit.
         frequency = bands_of(self.path("out/annual_frequency.tif"))[0]
         self.assertGreaterEqual(rows["A"]["frequency"], frequency[29, 21] - 1e-9)

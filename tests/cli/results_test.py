@@ -13,7 +13,7 @@ from osgeo_utils.samples.validate_cloud_optimized_geotiff import validate
 
 from support import NORTH, TALUS, WEST, Case, bands_of, rows_of, write_features
 
-CHANGING = ["command", "threads", "cpu_seconds", "wall_seconds", "peak_memory_mb"]  # of run.json
+CHANGING = ["command", "folder", "threads", "cpu_seconds", "wall_seconds", "peak_memory_mb"]  # of run.json
 
 
 def digests(folder, but=("run.json",)):

@@ -154,7 +154,7 @@ std::vector<std::string> write_objects(const Options& options, const talus::io::
                                        const talus::io::ObjectLayer& layer, const fs::path& folder,
                                        talus::io::HazardRecord& record) {
   for (const std::string& warning : layer.warnings()) record.warnings.push_back(warning);
-  if (const std::string text = layer.not_copied_text(record.header.rules, record.matrix.years); !text.empty())
+  if (const std::string text = layer.not_copied_text(record.header.rules, record.matrix); !text.empty())
     record.warnings.push_back(text);
   for (const std::string& text : {layer.lines_text(), layer.names_text()})
     if (!options.quiet && !text.empty()) say("", options.objects + ": " + text);
@@ -170,7 +170,7 @@ std::vector<std::string> write_objects(const Options& options, const talus::io::
   if (interrupted() || hits.empty()) stop_interrupted();
   talus::HazardRules rules = record.header.rules;
   rules.scale = weights->scale();  // a run in rounds has recorded another
-  layer.write(folder, loaded, rules, hits, record.matrix.years);
+  layer.write(folder, loaded, rules, hits, record.matrix);
   progress.finish();
   record.objects_file = options.objects;
   std::vector<std::string> lines = layer.hits_text(rules, hits);

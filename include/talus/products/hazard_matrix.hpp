@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "talus/products/hazard.hpp"
+
 namespace talus {
 
 /// Classes of hazard by intensity and return period of the events.
@@ -25,5 +27,15 @@ std::string fault_of(const HazardMatrix& matrix);
 /// @param frequencies  how often the lower end of each intensity is exceeded [1/year]: passage, then each of `energies`
 /// @param rare         whether events rarer than the last of `years` count
 int class_of(const HazardMatrix& matrix, std::span<const double> frequencies, bool rare = true);
+
+/// The class by frequencies with bounds.
+struct BoundedClass {
+  int value = 0, low = 0, high = 0;  ///< by the frequencies, by their lower and by their upper bounds
+  bool undecided = false;            ///< more trajectories may give another class
+};
+/// What may be rarer than the last of `years` by its upper bound alone does not count there.
+///
+/// @param frequencies  as above
+BoundedClass class_of(const HazardMatrix& matrix, std::span<const Bounded> frequencies);
 
 }  // namespace talus

@@ -152,6 +152,7 @@ class DiagnosisLoop {
     how.replicates = options_.replicates(kFamilies);
     how.seed = options_.seed;
     how.rules = rules_;
+    how.level = options_.level_of_round(found.size());
     return test_families({campaign_, ResidualSpace(campaign_, base.runs, rules_), base.runs, rows_, test, found}, how);
   }
 

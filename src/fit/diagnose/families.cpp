@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "talus/base/text.hpp"
 #include "talus/fit/diagnose/dispersion.hpp"
 #include "talus/fit/diagnose/energy_component.hpp"
 #include "talus/fit/score/holm.hpp"
@@ -14,8 +15,6 @@ namespace {
 
 constexpr const char *kProperty = "block property", *kPlace = "place", *kDay = "day", *kInstrument = "instrument",
                      *kDispersion = "dispersion";
-
-constexpr double kLeastRare = 0.05;  // a family whose smallest possible p is larger can name nothing
 
 std::string count_word(std::size_t n) {
   static constexpr std::array<const char*, 6> kWords{"no", "one", "two", "three", "four", "five"};
@@ -30,6 +29,13 @@ std::string rocks_word(std::size_t n) {
 std::string permutations_note(const PermutationTest& test, const std::string& what) {
   return std::string(test.exact ? "p from all " : "p from ") + std::to_string(test.arrangements) +
          " arrangements of the " + what;
+}
+
+/// A family that could not be significant, whichever of all arrangements was measured, names nothing.
+void refuse_to_name(FamilyTest& family, const PermutationTest& test, double level) {
+  if (!family.may_name || !test.exact || test.least <= level) return;
+  family.may_name = false;
+  family.note += ", of which the smallest p is " + with_digits(test.least, 2) + ": too few for any to be significant";
 }
 
 /// The units that the permutations exchanged in a test of a property, in words.
@@ -68,10 +74,7 @@ FamilyTest block_property(std::span<const BlockNumbers> sites, const FamilyOptio
   const PermutationTest& permuted = test.regression.permuted;
   family.p_value = permuted.p_value;
   family.note += (family.may_name ? "" : "; ") + permutations_note(permuted, units_word(test));
-  if (family.may_name && permuted.exact && kLeastRare * static_cast<double>(permuted.arrangements) < 1.0) {
-    family.may_name = false;
-    family.note += ", of which none could be rare: a property of the block cannot be named from them";
-  }
+  refuse_to_name(family, permuted, options.level);
   for (std::size_t i = 0; i < test.slopes.size(); ++i)
     if (!std::isnan(test.slopes[i].correlation))
       family.parts.push_back(
@@ -90,6 +93,7 @@ FamilyTest day(const FamilyInput& in, const std::vector<double>& energy, const F
   const char* units = test.by_rock ? "rocks within their groups, and of releases of one rock on several days"
                                    : "blocks within their groups";
   family.note = permutations_note(test.regression.permuted, units);
+  refuse_to_name(family, test.regression.permuted, options.level);
   for (std::size_t i = 0; i < test.days.size(); ++i)
     family.parts.push_back({"day " + std::to_string(test.days[i]), "mean", test.means[i], kNotGiven});
   return family;

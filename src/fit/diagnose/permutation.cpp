@@ -79,12 +79,14 @@ void Arrangements::choose(const Units& units, const std::vector<std::vector<std:
 }
 
 PermutationTest Arrangements::test(const std::function<double(std::span<const std::size_t>)>& statistic) const {
-  const double measured = statistic(givers_.front());
-  const double enough = measured - kEqual * std::max(1.0, std::abs(measured));
-  std::size_t as_large = 1;  // the measured arrangement
-  for (std::size_t number = 1; number < givers_.size(); ++number)
-    if (statistic(givers_[number]) >= enough) ++as_large;
-  return {static_cast<double>(as_large) / static_cast<double>(givers_.size()), givers_.size(), exact_};
+  std::vector<double> all;
+  for (const std::vector<std::size_t>& givers : givers_) all.push_back(statistic(givers));
+  const auto share_of = [&all](double value) {  // of those as large
+    const double enough = value - kEqual * std::max(1.0, std::abs(value));
+    return static_cast<double>(std::ranges::count_if(all, [=](double other) { return other >= enough; })) /
+           static_cast<double>(all.size());
+  };
+  return {share_of(all.front()), all.size(), exact_, share_of(std::ranges::max(all))};
 }
 
 }  // namespace talus

@@ -105,8 +105,8 @@ class SitesLoop {
     tests.score_test =
         score_test(campaign, {out.base.model, out.base.free, out.base.z, out.base.runs}, tests.candidates, rows, how);
     const ResidualSpace space(campaign, out.base.runs, rules_);
-    out.families =
-        test_families({campaign, space, out.base.runs, rows, tests.score_test}, {how.replicates, own.seed, rules_});
+    out.families = test_families({campaign, space, out.base.runs, rows, tests.score_test},
+                                 {how.replicates, own.seed, rules_, options_.level_of_round(0)});
     if (!brief_) {
       out.residual = residual_table(campaign, space, rows, rules_);
       out.limits =
@@ -132,7 +132,8 @@ class SitesLoop {
           energy_by_block(ResidualSpace(*sites_[i].campaign, *runs[i], rules_), *runs[i], fits_.rows()[i]));
     std::vector<BlockNumbers> numbers;
     for (std::size_t i = 0; i < sites_.size(); ++i) numbers.push_back({*sites_[i].campaign, energies[i]});
-    FamilyTest family = test_block_property(numbers, {replicates(), options_.seed, rules_});
+    FamilyTest family =
+        test_block_property(numbers, {replicates(), options_.seed, rules_, options_.level_of_round(found.size())});
     std::erase_if(family.members, [&](const std::string& m) { return std::ranges::find(found, m) != found.end(); });
     return family;
   }

@@ -15,7 +15,7 @@ namespace talus {
 namespace {
 
 namespace policies = boost::math::policies;
-/// Quantile p is the smallest count that no larger share than 1 - p of all counts exceeds.
+/// Its quantile p is the smallest count k for which counts of at most k have a probability of p or more.
 using Binomial =
     boost::math::binomial_distribution<double,
                                        policies::policy<policies::discrete_quantile<policies::integer_round_up>>>;

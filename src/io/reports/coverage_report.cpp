@@ -94,11 +94,12 @@ std::string leaving_sentence(const ScoredRows& scored) {
 }
 
 std::string coverage_lines(const ScoredRows& scored) {
-  if (scored.coverage.empty()) return {};
-  std::string text = rows_in_words(scored.rows) +
-                     " rows: measured values below the simulated percentiles (in brackets 95 % of right models; *: "
-                     "hardly a right model, p < 0.01 after correction)\n" +
-                     padded("", 24) + " rows  below P5            below P50           below P95\n";
+  std::string text;
+  if (!scored.coverage.empty())
+    text = rows_in_words(scored.rows) +
+           " rows: measured values below the simulated percentiles (in brackets 95 % of right models; *: "
+           "hardly a right model, p < 0.01 after correction)\n" +
+           padded("", 24) + " rows  below P5            below P50           below P95\n";
   for_rows(scored.coverage, [&text](const std::vector<std::string>& cells) {
     text += padded(cells[0], 24) + std::string(5 - std::min<std::size_t>(5, cells[1].size()), ' ') + cells[1];
     for (std::size_t i = 2; i < cells.size(); ++i)

@@ -80,9 +80,9 @@ std::string gain_in_doubt(const DiagnosisRound& round) {
   const Interval gain = chosen.unseen_gain_interval();
   if (!(gain.low <= 0.0)) return "";
   return " Blocks left out of its fit do not show the gain of " + round.effect +
-         " for sure: the objective, less the price of its place, is lower by " +
-         with_decimals(chosen.unseen_gain(), 3) + " (95 %: " + with_decimals(gain.low, 3) + " to " +
-         with_decimals(gain.high, 3) + ").";
+         " for sure: it lowers the objective by " + with_decimals(chosen.unseen_gain(), 3) +
+         " (95 %: " + with_decimals(gain.low, 3) + " to " + with_decimals(gain.high, 3) +
+         ") after the price of its place.";
 }
 
 /// Names the families that are significant in the first round, at its level, and the row of the residual table that is
@@ -185,7 +185,8 @@ std::string next(const DiagnosisRecord& record) {
   std::string text = further_speeds(d.rounds.back().limits);
   for (const FamilyTest& family : d.rounds.front().families)
     if (!family.may_name)
-      text += "Blocks of more rocks (six at least). ";
+      text += family.name == "day" ? "More releases on several days within one group. "
+                                   : "More rocks that are released at one place (six different ones at least). ";
     else if (std::isnan(family.p_value))
       text += "For the family " + family.name + " " + family.note + ". ";
   text += more_blocks(record);

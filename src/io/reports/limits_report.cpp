@@ -49,7 +49,7 @@ std::string limits_lines(std::span<const DetectionLimit> limits) {
     list += (list.empty() ? "" : ", ") + limit.effect;
   }
   std::string line;
-  if (!hidden.empty()) line += "cannot be seen in these data within the bounds of the search: " + hidden + "\n";
+  if (!hidden.empty()) line += "cannot be seen in these data: " + hidden + "\n";
   if (!helped.empty()) line += "speeds at more screens would show: " + helped + "\n";
   return line;
 }

@@ -77,10 +77,13 @@ Reduction skill_of(const Score& score, const Score& climatology, std::span<const
   return reduction(climatology, score, clusters);
 }
 
-/// Skill that a fit of so many numbers shows on its own rows although it has none on others: each number lowers the sum
-/// of the scores as it does in Akaike's criterion (`DiagnosisRules::price`).
+/// Skill that a fit of so many numbers shows on its own rows although it has none on others: the price of a number in
+/// Akaike's criterion (`DiagnosisRules::price`), as if the groups were independent of each other.
 double skill_of_fit(const ScoredRows& s) {
-  return DiagnosisRules{}.price * s.fitted / static_cast<double>(s.blocks) / s.climatology.total;
+  double shares = 0.0;
+  for (const GroupScore& group : s.compared.groups) shares += 1.0 / group.rows;
+  const auto groups = static_cast<double>(s.compared.groups.size());
+  return DiagnosisRules{}.price * s.fitted * shares / (groups * groups) / s.climatology.total;
 }
 
 /// Number of blocks that were measured at rest, of which more than a quarter of the simulated trials leave the DEM. A
@@ -153,10 +156,10 @@ std::string leaving_warning(const ScoredRows& s) {
                                 "blocks go too far, or the DEM is too small (a fit then makes run-outs too short)";
   const bool too_many = s.leaving_trials.p_value < kWrongSpread;
   if (s.leaving == 0 && !too_many) return {};
-  const std::string trials = "more than a quarter of the trials leave the DEM of " + blocks +
-                             "blocks, though these came to rest on it" +
+  const std::string trials = "of " + blocks +
+                             "blocks more than a quarter of the trials leave the DEM, though these came to rest on it" +
                              (too_many ? " (" + leaving_text(s.leaving_trials) + ")" : "");
-  return (s.leaving > 0 ? trials : leaving_sentence(s)) +
+  return (s.leaving > 0 ? trials : rows_in_words(s.rows) + " rows: " + leaving_text(s.leaving_trials)) +
          ": the ground lets blocks go too far, or the DEM is too small or has gaps there (a fit then makes run-outs "
          "too short)";
 }
@@ -242,8 +245,9 @@ std::string skill_sentence(const ScoredRows& s) {
   std::string of_numbers;
   if (std::isnan(s.fitted)) of_numbers = "; these rows were fitted, which lowers their error without any skill";
   if (of_fit > 0.0)
-    of_numbers = "; fitting " + with_decimals(s.fitted, 1) + " free numbers to " + std::to_string(s.blocks) +
-                 " blocks gains some " + with_decimals(100.0 * of_fit, 1) + " % on them without any skill";
+    of_numbers = "; fitting " + with_decimals(s.fitted, 1) + " free numbers to these " +
+                 std::to_string(s.compared.rows.size()) + " rows gains some " + with_decimals(100.0 * of_fit, 1) +
+                 " % on them without any skill";
   return rows + "skill " + with_decimals(100.0 * s.skill.share, 1) + " %" + interval + ": " + errors + of_numbers +
          (s.skill.interval.low > of_fit ? "" : "; it may have no skill");
 }

@@ -77,7 +77,7 @@ std::unique_ptr<OGRGeometry> geometry_of(const Parts& parts, double west, double
 using Figures = std::vector<std::pair<std::string, double>>;
 
 /// @param known  false: the figures of the object are not known, although blocks may touch its rim
-Figures figures_of(const HazardRules& rules, const ObjectHits& hits, bool known, const std::vector<double>& years) {
+Figures figures_of(const HazardRules& rules, const ObjectHits& hits, bool known, const HazardMatrix& matrix) {
   const HazardCurve curve(rules, hits.largest), entry(rules, hits.entry);
   const std::vector<double>& thresholds = rules.bins.thresholds();
   Figures figures{{"trajectories", static_cast<double>(hits.trajectories)}};
@@ -93,7 +93,12 @@ Figures figures_of(const HazardRules& rules, const ObjectHits& hits, bool known,
     figures.emplace_back("return_period_" + text_of(thresholds[i]), return_period(curve.exceedance(i)).value);
     add("entry_" + text_of(thresholds[i]), entry.exceedance(i));
   }
-  for (const double t : years) add("energy_T" + text_of(t), curve.energy_once_in(t));
+  for (const double t : matrix.years) add("energy_T" + text_of(t), curve.energy_once_in(t));
+  std::vector<Bounded> frequencies{curve.passage()};
+  for (const double energy : matrix.energies) frequencies.push_back(curve.exceedance_of(energy));
+  const BoundedClass found = class_of(matrix, frequencies);
+  add("hazard_class",
+      {static_cast<double>(found.value), static_cast<double>(found.low), static_cast<double>(found.high)});
   if (!known)
     for (auto& [name, value] : figures) value = kNotGiven;
   return figures;
@@ -462,9 +467,9 @@ std::string curve_rows(const std::string& object, const HazardCurve& curve, cons
 
 }  // namespace
 
-std::string ObjectLayer::not_copied_text(const HazardRules& rules, const std::vector<double>& years) const {
+std::string ObjectLayer::not_copied_text(const HazardRules& rules, const HazardMatrix& matrix) const {
   OGRFeature& model = *state_->features.front();
-  const std::vector<int> copied = copied_attributes(model, figures_of(rules, {}, false, years));
+  const std::vector<int> copied = copied_attributes(model, figures_of(rules, {}, false, matrix));
   std::vector<std::string> left_out;
   for (int i = 0; i < model.GetFieldCount(); ++i) {
     const std::string name = model.GetFieldDefnRef(i)->GetNameRef();
@@ -502,7 +507,7 @@ std::vector<std::string> ObjectLayer::hits_text(const HazardRules& rules, const 
 }
 
 void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenario& loaded, const HazardRules& rules,
-                        const std::vector<ObjectHits>& hits, const std::vector<double>& years) const {
+                        const std::vector<ObjectHits>& hits, const HazardMatrix& matrix) const {
   const Grid& grid = loaded.scenario.surface.grid();
   std::unique_ptr<ObjectsWriter> writer;
   ObjectsTable table;
@@ -510,7 +515,7 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
               from = "object,feature,frequency,share\n";
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const HazardCurve curve(rules, hits[i].largest);
-    const Figures figures = figures_of(rules, hits[i], state_->known(i), years);
+    const Figures figures = figures_of(rules, hits[i], state_->known(i), matrix);
     const std::string object = csv_field(state_->names[i]);
     std::string sources;
     for (const auto& [feature, share] : State::sources_of(state_->known(i) ? hits[i] : ObjectHits{})) {

@@ -23,15 +23,19 @@ struct RecordedPlan {
   std::string folder;  // where it lay when it was written; empty: not known
 };
 
-LoadedScenario load(const std::string& file, const std::optional<RecordedPlan>& plan) {
+/// Reads the scenario of a plan with the files that it was of: where they were, or else beside the results, if these
+/// have been moved or copied since. Throws InputError if these are others now.
+LoadedScenario load_same(const std::string& scenario, const RecordedPlan& plan) {
   RunFlags flags;
-  flags.scenario = file;
-  if (plan) flags.recorded_in = plan->folder;
-  return load_scenario(flags);
-}
-
-void require_same(const LoadedScenario& loaded, const RecordedPlan& plan, const std::string& scenario) {
-  if (plan_checksum(loaded, plan.rounds) == plan.checksum) return;
+  flags.scenario = scenario;
+  flags.recorded.folder = plan.folder;
+  const bool elsewhere = fs::path(plan.folder) != fs::absolute(scenario).parent_path();
+  for (const bool beside_first : {false, true}) {
+    if (beside_first && !elsewhere) break;
+    flags.recorded.beside_first = beside_first;
+    LoadedScenario loaded = load_scenario(flags);
+    if (plan_checksum(loaded, plan.rounds) == plan.checksum) return loaded;
+  }
   throw InputError(scenario +
                    ": it, or a file that it names, has changed since the run, so that the run cannot be repeated; run "
                    "again (the checksums are in " +
@@ -63,19 +67,17 @@ std::optional<RecordedPlan> plan_in(const fs::path& folder) {
 }  // namespace
 
 LoadedScenario recorded_plan(const fs::path& folder, const std::string& plan) {
-  const std::string scenario = (folder / "scenario.toml").string();
-  LoadedScenario loaded = load(scenario, plan_in(folder));
-  require_same(loaded, {plan, 1, "run.json", {}}, scenario);
-  return loaded;
+  const std::optional<RecordedPlan> recorded = plan_in(folder);
+  return load_same((folder / "scenario.toml").string(), {plan, 1, "run.json", recorded ? recorded->folder : ""});
 }
 
 LoadedScenario recorded_or_own_plan(const std::string& scenario) {
   const fs::path file(scenario);
-  std::optional<RecordedPlan> plan;
-  if (file.filename() == "scenario.toml") plan = plan_in(file.parent_path());
-  LoadedScenario loaded = load(scenario, plan);
-  if (plan) require_same(loaded, *plan, scenario);
-  return loaded;
+  if (file.filename() == "scenario.toml")
+    if (const auto plan = plan_in(file.parent_path())) return load_same(scenario, *plan);
+  RunFlags flags;
+  flags.scenario = scenario;
+  return load_scenario(flags);
 }
 
 }  // namespace talus::io

@@ -28,17 +28,19 @@ namespace talus::io {
 
 namespace {
 
-/// Names the files that were moved together with the results (`RunFlags::recorded_in`) by their new places.
+/// Names files by the places beside the results (`RunFlags::Recorded`), as they lay when these were written. Parts of
+/// files (NETCDF:...), archives and addresses keep their names.
 void follow(ScenarioSpec& spec, const RunFlags& flags) {
   namespace fs = std::filesystem;
-  if (flags.recorded_in.empty()) return;
+  if (flags.recorded.folder.empty()) return;
   const fs::path now = fs::absolute(flags.scenario).parent_path();
   for (const auto& [role, file] : spec.inputs()) {
-    const std::string path = file_of_layer(file->path);
+    const fs::path path = file_of_layer(file->path);
     std::error_code none;
-    if (path.empty() || fs::exists(path, none)) continue;
-    const fs::path moved = (now / fs::path(path).lexically_relative(flags.recorded_in)).lexically_normal();
-    if (fs::exists(moved, none)) file->path = same_layer_in(moved.string(), file->path);
+    if (!path.is_absolute() || path.string().starts_with("/vsi")) continue;
+    if (!flags.recorded.beside_first && fs::exists(path, none)) continue;
+    const fs::path beside = (now / path.lexically_relative(flags.recorded.folder)).lexically_normal();
+    if (fs::is_regular_file(beside, none)) file->path = same_layer_in(beside.string(), file->path);
   }
 }
 

@@ -100,7 +100,7 @@ def _is_number(text):
 def _choice(p, value):
     """The text of a choice that may be given by its number in the list, as QGIS lists choices for scripts."""
     texts = p["choices"]
-    return texts[int(value)] if str(value).isdigit() and value not in texts and int(value) < len(texts) else value
+    return texts[int(value)] if str(value).isascii() and str(value).isdigit() and value not in texts and int(value) < len(texts) else value
 
 
 def _is_temporary(value):
@@ -423,7 +423,12 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
                                     "under \"Results\" to keep them."))
         inputs = layers.folder_beside(folder)
         before = layers.names_in(inputs)
-        words = self._words(parameters, context, feedback, inputs)
+        try:
+            words = self._words(parameters, context, feedback, inputs)
+        except Exception:
+            layers.remove(inputs, layers.names_in(inputs) - before)
+            raise
+        made = layers.names_in(inputs) - before
         rounds = self.parameterAsInt(parameters, "ROUNDS", context) if parameters.get("ROUNDS") else 1
         begin = time.time()
         progress = process.Progress(feedback, self._phases(parameters), None if parameters.get("UNTIL_ERROR") else rounds)
@@ -432,7 +437,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         except process.Cancelled as cancelled:
             raise QgsProcessingException(f"{cancelled} {self._after_cancel(folder)}".strip()) from cancelled
         except process.Refused:
-            layers.remove_others(inputs, before)
+            layers.remove(inputs, made)
             raise
         return self._results(parameters, context, folder, begin)
 

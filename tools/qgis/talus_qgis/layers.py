@@ -36,10 +36,10 @@ def names_in(inputs):
     return set(os.listdir(inputs)) if os.path.isdir(inputs) else set()
 
 
-def remove_others(inputs, names):
-    """Removes what has come into a folder of inputs since it held `names`; the folder, too, if it is empty then."""
-    for name in names_in(inputs) - names:
-        shutil.rmtree(os.path.join(inputs, name))
+def remove(inputs, names):
+    """Removes some folders of a folder of inputs; it, too, if it is empty then."""
+    for name in names:
+        shutil.rmtree(os.path.join(inputs, name), ignore_errors=True)
     if os.path.isdir(inputs) and not os.listdir(inputs):
         os.rmdir(inputs)
 

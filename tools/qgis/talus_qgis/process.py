@@ -27,7 +27,7 @@ class Cancelled(QgsProcessingException):
 
 
 class Refused(QgsProcessingException):
-    """The program has refused its input, and written nothing."""
+    """The program has refused its input."""
 
 
 class Progress:

@@ -23,6 +23,7 @@ struct FamilyOptions {
   int replicates = 2000;  ///< simulated data sets; so many arrangements of a permutation test, at least
   std::uint64_t seed = 1;
   DiagnosisRules rules;
+  double level = 0.05;  ///< at which a family is significant
 };
 
 /// Tests of all `kFamilies` families, in a fixed order, with Holm's correction.

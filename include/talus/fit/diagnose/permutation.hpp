@@ -19,6 +19,7 @@ struct PermutationTest {
   double p_value = 1.0;
   std::size_t arrangements = 0;  ///< that were compared, the measured one included
   bool exact = false;            ///< these are all that there are
+  double least = 0.0;            ///< the smallest p-value that any of them could have had
 };
 
 /// Ways in which the units of each stratum can hand each other their values: all of them where there are few, else a

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "talus/io/scenario/loaded_scenario.hpp"
-#include "talus/products/hazard.hpp"
+#include "talus/products/hazard_matrix.hpp"
 #include "talus/products/objects.hpp"
 
 namespace talus::io {
@@ -39,7 +39,7 @@ class ObjectLayer {
 
   /// A warning of the fields that `write` does not copy, as the results have columns of these names; empty if there are
   /// none.
-  std::string not_copied_text(const HazardRules& rules, const std::vector<double>& years) const;
+  std::string not_copied_text(const HazardRules& rules, const HazardMatrix& matrix) const;
 
   /// How often each object is hit, in words, a line each, the most often hit first; at most `most` of them.
   std::vector<std::string> hits_text(const HazardRules& rules, const std::vector<ObjectHits>& hits,
@@ -50,10 +50,10 @@ class ObjectLayer {
   /// sources).
   ///
   /// @param hits  by object
-  /// @param years  periods of the columns energy_T<years>
+  /// @param matrix  of the columns hazard_class and energy_T<years>
   /// Throws std::runtime_error on a full disk.
   void write(const std::filesystem::path& folder, const LoadedScenario& loaded, const HazardRules& rules,
-             const std::vector<ObjectHits>& hits, const std::vector<double>& years) const;
+             const std::vector<ObjectHits>& hits, const HazardMatrix& matrix) const;
 
  private:
   struct State;

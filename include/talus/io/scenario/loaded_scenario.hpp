@@ -40,9 +40,13 @@ struct RunFlags {
   std::optional<std::uint64_t> seed;
   std::vector<std::string> fields;  ///< "diameter=Durchmesser": names of fields of the sources
   bool energy_total = false, bounds = false;
-  /// Folder in which the results lay whose scenario this is; empty: it is read as it stands. A file that is gone is taken
-  /// from where it lies now if it was moved together with them; the caller compares what the files hold.
-  std::string recorded_in;
+  /// Of the scenario of results: a file may have been moved or copied together with them. The caller compares what the
+  /// files hold.
+  struct Recorded {
+    std::string folder;  ///< in which the results lay when they were written; empty: files are as they are named
+    bool beside_first =
+        false;  ///< the file beside the results counts, if there is one; else only where the other is gone
+  } recorded;
 };
 
 /// Reads and checks everything. Throws InputError, one line; `all_faults` gets every fault of the settings (for

@@ -249,27 +249,36 @@ TEST(Families, SayWhyNoPropertyWasTestedAndWhatChangedPlaces) {
   EXPECT_EQ(property_of(12, 12).note, "p from 10000 arrangements of the blocks");
   EXPECT_EQ(property_of(12, 6).note, "p from all 720 arrangements of the rocks, not of their releases");
   EXPECT_EQ(property_of(12, 12, "s").note, "p from 10000 arrangements of the blocks within their sites");
-  EXPECT_EQ(property_of(24, 6, "s").note,
-            "p from all 36 arrangements of the rocks within their sites, not of their releases");
+  EXPECT_EQ(
+      property_of(24, 6, "s").note,
+      "p from all 36 arrangements of the rocks within their sites, not of their releases, of which the smallest p is "
+      "0.056: too few for any to be significant");  // 2 of 36: three rocks' order and its mirror image
 }
 
-/// Six rocks, two at each of three sites, have 2^3 arrangements: no p is below 1/8, and the family takes no level.
+/// Two rocks at each of several sites have 2^sites arrangements, each of which has a mirror image that is as large: the
+/// smallest p of three sites is 1/4, of five 1/16, of six 1/32.
 TEST(Families, APropertyThatNoArrangementCanShowIsNotNamed) {
-  Campaign c = measured().campaign;
-  c.blocks.resize(12);
-  std::vector<double> energy;
-  Numbers numbers(9);
-  for (std::size_t b = 0; b < 12; ++b) {
-    c.blocks[b].mass = 500.0 * std::pow(1.1, static_cast<double>(b % 6));
-    c.blocks[b].axes.setConstant(equivalent_diameter(c.blocks[b].mass, c.blocks[b].density));
-    c.blocks[b].group = "s" + std::to_string(b % 3);
-    energy.push_back(numbers.normal());
-  }
-  const FamilyTest family = test_block_property(std::vector<BlockNumbers>{{c, energy}}, {});
-  EXPECT_FALSE(family.may_name);
-  EXPECT_EQ(family.note,
-            "p from all 8 arrangements of the rocks within their sites, not of their releases, of which none could be "
-            "rare: a property of the block cannot be named from them");
+  const auto of_sites = [](std::size_t sites, double level) {
+    Campaign c = measured().campaign;
+    c.blocks.resize(4 * sites);
+    std::vector<double> energy;
+    Numbers numbers(9);
+    for (std::size_t b = 0; b < c.blocks.size(); ++b) {
+      const std::size_t rock = b % (2 * sites);
+      c.blocks[b].mass = 500.0 * std::pow(1.1, static_cast<double>(rock));
+      c.blocks[b].axes.setConstant(equivalent_diameter(c.blocks[b].mass, c.blocks[b].density));
+      c.blocks[b].group = "s" + std::to_string(rock % sites);
+      energy.push_back(numbers.normal());
+    }
+    return test_block_property(std::vector<BlockNumbers>{{c, energy}}, {.level = level});
+  };
+  EXPECT_FALSE(of_sites(3, 0.05).may_name);
+  EXPECT_EQ(of_sites(3, 0.05).note,
+            "p from all 8 arrangements of the rocks within their sites, not of their releases, of which the smallest p "
+            "is 0.25: too few for any to be significant");
+  EXPECT_FALSE(of_sites(5, 0.05).may_name);
+  EXPECT_TRUE(of_sites(5, 0.1).may_name);
+  EXPECT_TRUE(of_sites(6, 0.05).may_name);
 }
 
 /// The permutations give as small a p as the data sets: 12 blocks have 479 001 600 arrangements to choose from.
