@@ -286,15 +286,13 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
   html +=
       "<h2>Families</h2>\n<p>Effects that leave the same kind of trace are tested together, by one test of few degrees "
       "of freedom. Only an effect of a significant family may be named. The p of place, instrument and dispersion are "
-      "too "
-      "small: of 90 simulated campaigns in which nothing was missing 11, 16 and 13 % had one of 5 % or less "
+      "too small: of 90 simulated campaigns in which nothing was missing 11, 16 and 13 % had one of 5 % or less "
       "(docs/diagnosis-results.md), more where blocks of a group share a ground or an error.</p>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
     html += "<h3>Round "_html + std::to_string(i + 1) + "</h3>\n" + families_table(d.rounds[i]);
   html +=
       "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where it may be named, else "
-      "with "
-      "the ground held. The objective is the error with groups of n rows that count n / (n + 10).</p>\n";
+      "with the ground held. The objective is the error with groups of n rows that count n / (n + 10).</p>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
     if (!d.rounds[i].candidates.empty())
       html += "<h3>Round "_html + std::to_string(i + 1) + (i > 0 ? ", with what was found before in the model" : "") +

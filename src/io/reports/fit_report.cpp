@@ -215,10 +215,8 @@ std::string calibration_report(const Calibration& c) {
                      ").\n\n## Parameters\n\n" + parameter_lines(c) + "\n";
   text +=
       "Intervals: 400 fits to blocks with random weights (Bayesian bootstrap; of six groups or more by group), each "
-      "with "
-      "its own draw of the prior "
-      "(normal; of the "
-      "logarithm where the scale is one, with a factor of e, around the start). **Not identifiable**: the interval is "
+      "with its own draw of the prior (normal; of the logarithm where the scale is one, with a factor of e, around the "
+      "start). **Not identifiable**: the interval is "
       "wider than half of what the prior or the bounds allow; the number in brackets is one of many that do as well. "
       "The intervals hold if the model is right; they do not say that it is.\n\n";
   for (const std::string& zone : c.untouched)
