@@ -124,6 +124,20 @@ TEST_F(Tables, ObjectsThatWereNotAssessedAreNotCalledSafe) {  // they were hit 0
   EXPECT_THAT(html, Not(HasSubstr("Never seen")));
 }
 
+TEST_F(Tables, ObjectsHaveTheirClassByName) {
+  write_text("objects.csv",
+             "object,frequency,frequency_lower,frequency_upper,hazard_class,sources\nmill,0.5,0.4,0.6,2,a\n"
+             "barn,0,0,0.1,0,\nodd,0,0,0.1,7,\ngap,,,,,\n");
+  const ObjectsPart part = read_objects_part(path(""));
+  const std::string html = objects_html(part, false, {"none", "low", "high & steep"}).text();
+  EXPECT_THAT(html, HasSubstr("<th>class</th><th>from</th>"));
+  EXPECT_THAT(html, HasSubstr("<td>high &amp; steep</td><td>a</td>"));
+  EXPECT_THAT(html, HasSubstr("<td>none</td><td></td>"));
+  EXPECT_THAT(html, HasSubstr("<td></td><td></td>"));  // a number without a name
+  EXPECT_THAT(html, HasSubstr("<td>gap</td><td colspan='4'>"));
+  EXPECT_THAT(objects_html(part, false).text(), Not(HasSubstr("<th>class</th>")));
+}
+
 TEST_F(Tables, ObjectsThatAreHitOnceInManyYears) {  // refused above 1e15 years
   write_text("objects.csv",
              "object,frequency,frequency_lower,frequency_upper,frequency_30,return_period_30,frequency_30_lower,"

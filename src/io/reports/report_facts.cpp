@@ -163,7 +163,7 @@ RunFacts read_facts(const std::filesystem::path& folder) {
 static void read_classes(const Json& matrix, HazardFacts& hazard) {
   hazard.energies = matrix.at("energies_kj").get<std::vector<double>>();
   hazard.years = matrix.at("years").get<std::vector<double>>();
-  const std::vector<std::string> names = texts_of(matrix, "names");
+  const std::vector<std::string> names = hazard.class_names = texts_of(matrix, "names");
   const Json& rows = matrix.at("classes");
   if (!rows.is_array() || rows.size() != hazard.energies.size() + 1)
     throw InputError("its matrix must have one row of classes more than energies");

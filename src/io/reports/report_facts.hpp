@@ -78,6 +78,7 @@ struct HazardFacts {
   std::string command, object;
   double events_per_year = 0.0, left_per_year = 0.0;
   std::vector<double> energies, years;  ///< between the classes of intensity [kJ] and of return period [years]
+  std::vector<std::string> class_names;           ///< by number
   std::vector<std::vector<std::string>> classes;  ///< names: a row for each class of intensity, the shortest time first
   std::vector<std::string> warnings;
   FrequencyFacts frequency;

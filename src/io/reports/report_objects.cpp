@@ -114,8 +114,8 @@ Markup curves_drawing(const ObjectsPart& part) {
   return svg.drawing({{"width", 720}, {"height", 298}, {"viewBox", "0 0 720 298"}});
 }
 
-Markup not_assessed_row(const std::string& name, const ObjectsPart& part) {
-  return "<tr><td>"_html + name + "</td><td colspan='" + std::to_string(part.thresholds.size() + 3) +
+Markup not_assessed_row(const std::string& name, const ObjectsPart& part, bool classes) {
+  return "<tr><td>"_html + name + "</td><td colspan='" + std::to_string(part.thresholds.size() + (classes ? 4 : 3)) +
          "'>not assessed: the DEM has no height there</td></tr>\n";
 }
 
@@ -127,11 +127,13 @@ std::string years_text(std::optional<double> frequency, std::optional<double> lo
   return (years.empty() ? "no event" : years) + " [" + least + (most.empty() ? " or more]" : " to " + most + "]");
 }
 
-Markup object_row(const ObjectsPart::Object& object) {
+Markup object_row(const ObjectsPart::Object& object, const std::vector<std::string>& classes) {
   Markup row = "<tr><td>"_html + object.name + "</td><td class='n'>" + with_digits(object.frequency, 3) + " [" +
                with_digits(object.low, 3) + ", " + with_digits(object.high, 3) + "]</td><td class='n'>" +
                years_text(object.frequency, object.low, object.high) + "</td>";
   for (const std::string& years : object.years) row += "<td class='n'>"_html + years + "</td>";
+  const bool known = object.hazard_class && *object.hazard_class < classes.size();
+  if (!classes.empty()) row += "<td>"_html + (known ? classes[*object.hazard_class] : "") + "</td>";
   return row + "<td>" + shortened(object.sources, 300) + "</td></tr>\n";
 }
 
@@ -146,7 +148,9 @@ void add_object(const CsvTable& table, const CsvTable::Row& row, ObjectsPart& pa
       ++part.not_assessed_left_out;
     return;
   }
-  ObjectsPart::Object object{name, table.text(row, "sources"), *frequency, *low, *high, {}, {}};
+  ObjectsPart::Object object{name, table.text(row, "sources"), *frequency, *low, *high, {}, {}, {}};
+  if (const auto c = number("hazard_class"); c && *c >= 0.0 && *c < 1e3)
+    object.hazard_class = static_cast<std::size_t>(*c);
   for (const std::string& energy : part.thresholds)
     object.years.push_back(years_text(number("frequency_" + energy), number("frequency_" + energy + "_lower"),
                                       number("frequency_" + energy + "_upper")));
@@ -184,7 +188,7 @@ ObjectsPart read_objects_part(const fs::path& folder) {
   return part;
 }
 
-Markup objects_html(const ObjectsPart& part, bool pieces) {
+Markup objects_html(const ObjectsPart& part, bool pieces, const std::vector<std::string>& classes) {
   const Markup note = part.note.empty() ? Markup() : "<p class='note'>"_html + part.note + "</p>\n";
   if (part.objects.empty() && part.not_assessed.empty())
     return part.note.empty() ? Markup() : "<h2>Objects</h2>\n"_html + note;
@@ -192,16 +196,19 @@ Markup objects_html(const ObjectsPart& part, bool pieces) {
       "<h2>Objects</h2>\n<p>How often each object is hit, with 95 % bounds of the number of blocks in brackets. \"No "
       "event\": no block of this run did it; it may happen all the same, as often as the upper bound. Energies are the "
       "largest within the outline (safe for what does not stop a block: a yard, a road); at the first touch, for a "
-      "wall, they are in objects.csv (entry), at a barrier in its table. The class of the place is that of the map "
-      "\"Hazard class\".</p>\n"_html;
+      "wall, they are in objects.csv (entry), at a barrier in its table. The class is that of the object by these "
+      "frequencies, the map \"Hazard class\" has that of each cell.</p>\n"_html;
   if (pieces) html += "<p>Blocks broke, and "_html + kHitsOfPieces + ".</p>\n";
   html += "<div class='wide'><table><tr><th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
   for (const std::string& energy : part.thresholds) html += "<th>above "_html + energy + " kJ once in [years]</th>";
+  const bool with_class = std::ranges::any_of(part.objects, [](const auto& o) { return o.hazard_class.has_value(); });
+  const std::vector<std::string>& names = with_class ? classes : std::vector<std::string>();
+  if (!names.empty()) html += "<th>class</th>"_html;
   html += "<th>from</th></tr>\n";
-  for (const std::string& name : part.not_assessed) html += not_assessed_row(name, part);
+  for (const std::string& name : part.not_assessed) html += not_assessed_row(name, part, !names.empty());
   if (part.not_assessed_left_out > 0)
-    html += not_assessed_row(std::to_string(part.not_assessed_left_out) + " more objects", part);
-  for (const ObjectsPart::Object& object : part.objects) html += object_row(object);
+    html += not_assessed_row(std::to_string(part.not_assessed_left_out) + " more objects", part, !names.empty());
+  for (const ObjectsPart::Object& object : part.objects) html += object_row(object, names);
   html += "</table></div>\n";
   if (part.left_out > 0)
     html +=

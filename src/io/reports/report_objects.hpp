@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct ObjectsPart {
     double frequency = 0.0, low = 0.0, high = 0.0;  ///< [1/year]
     std::vector<std::string> years;                 ///< return period by threshold, with its bounds [years], in words
     std::vector<Point> curve;
+    std::optional<std::size_t> hazard_class = {};  ///< its number; nothing in a table without classes
   };
   std::vector<std::string> thresholds;  ///< [kJ]
   std::vector<Object> objects;          ///< the most often hit first
@@ -29,7 +31,8 @@ struct ObjectsPart {
 
 /// Throws InputError if a table is there and cannot be understood. No objects without tables.
 ObjectsPart read_objects_part(const std::filesystem::path& folder);
-/// @param pieces  blocks of the run broke
-Markup objects_html(const ObjectsPart& part, bool pieces);
+/// @param pieces   blocks of the run broke
+/// @param classes  names of the classes, by number
+Markup objects_html(const ObjectsPart& part, bool pieces, const std::vector<std::string>& classes = {});
 
 }  // namespace talus::io

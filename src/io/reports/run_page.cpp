@@ -203,9 +203,11 @@ std::string run_page(const RunPageRequest& request) {
       report.sheet.maps.empty() ? Markup() : run_page_script()};
   const Markup body = run_html(report, attribution) + maps_html(report, imprint) + standing_html(report.run) +
                       screens_html(report.screens) + barriers_html(report.barriers) +
-                      objects_html(report.objects, report.run.pieces > 0.0) + fit_html(report.fit) +
-                      assumptions_html(report.checked()) + checks_html(checks_of(report.checked())) +
-                      "<h2>Record</h2>\n" + inputs_html(report.run) + settings_html(report.run);
+                      objects_html(report.objects, report.run.pieces > 0.0,
+                                   report.hazard ? report.hazard->class_names : std::vector<std::string>()) +
+                      fit_html(report.fit) + assumptions_html(report.checked()) +
+                      checks_html(checks_of(report.checked())) + "<h2>Record</h2>\n" + inputs_html(report.run) +
+                      settings_html(report.run);
   return page_of(frame, body);
 }
 

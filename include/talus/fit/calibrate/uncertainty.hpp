@@ -14,8 +14,8 @@ struct Uncertainty {
   bool interrupted = false;
 };
 
-/// Number of free parameters, of which one that the prior holds counts for less: sum of 1 - variance of z (that of
-/// the prior is 1). On its own rows a fit gains as much as one of so many parameters without a prior.
+/// Number of free parameters; one that the prior holds counts for less. The sum of 1 - variance of z, as the prior has
+/// a variance of 1. On its own rows a fit gains as much as one of so many parameters without a prior.
 double effective_numbers(const Uncertainty& uncertainty);
 
 /// A parameter is called not identifiable where its 95 % interval is wider than this share of the prior's, or of the

@@ -43,9 +43,8 @@ struct RunFlags {
   /// Of the scenario of results: a file may have been moved or copied together with them. The caller compares what the
   /// files hold.
   struct Recorded {
-    std::string folder;  ///< in which the results lay when they were written; empty: files are as they are named
-    bool beside_first =
-        false;  ///< the file beside the results counts, if there is one; else only where the other is gone
+    std::string folder;         ///< of the results when they were written; empty: files are as they are named
+    bool beside_first = false;  ///< the file beside the results counts also where the named one is there
   } recorded;
 };
 
