@@ -367,7 +367,7 @@ class Content(Report):
         on_map = re.findall(r"<text[^>]*>(EGID \d|\d)</text>", source[:source.index("</defs>")])
         self.assertEqual(sorted(name for name in on_map if name.startswith("EGID")), ["EGID 7", "EGID 8"])
         first, second = re.findall(r"<tr><td>EGID.*", source)
-        self.assertEqual(first, "<tr><td>EGID 8</td><td colspan='5'>not assessed: the DEM has no height there</td></tr>")
+        self.assertEqual(first, "<tr><td>EGID 8</td><td colspan='6'>not assessed: the DEM has no height there</td></tr>")
         self.assertTrue(second.startswith("<tr><td>EGID 7</td><td class='n'>"), second)
 
     def test_hostile_names_stay_text(self):
