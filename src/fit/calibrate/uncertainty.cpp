@@ -65,8 +65,7 @@ double effective_numbers(const Uncertainty& uncertainty) {
   const Eigen::MatrixXd& z = uncertainty.draws;
   if (z.rows() < 2) return 0.0;
   const Eigen::RowVectorXd mean = z.colwise().mean();
-  const Eigen::RowVectorXd variance =
-      (z.rowwise() - mean).colwise().squaredNorm() / static_cast<double>(z.rows() - 1);
+  const Eigen::RowVectorXd variance = (z.rowwise() - mean).colwise().squaredNorm() / static_cast<double>(z.rows() - 1);
   return (1.0 - variance.array()).max(0.0).sum();
 }
 

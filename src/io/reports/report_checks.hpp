@@ -25,7 +25,7 @@ struct CheckedRun {
   const MapSheet& sheet;
   const ScreensPart& screens;
   const std::optional<FitPart>& fit;
-  bool has_frequencies;              ///< the sources say how often blocks fall
+  bool has_frequencies;  ///< the sources say how often blocks fall
 };
 
 /// "Before you sign": every point, in the order of the README.

@@ -52,12 +52,12 @@ struct RunFacts {
   double released = 0.0, source_cells = 0.0, per_source = 0.0, rounds = 0.0, impacts = 0.0, kilometres = 0.0;
   double touched_cells = 0.0, deformation_coefficient = 0.0;
   std::optional<std::pair<double, double>> diameters;  ///< of the smallest and the largest block [m]; earlier: nothing
-  std::vector<std::pair<std::string, double>> ends;  ///< in the order of the record
-  std::optional<std::array<double, 3>> energy_line;  ///< least, P5, P50 [deg]
-  std::optional<GullyFacts> gullies;                 ///< nothing in an earlier record
-  double left_into_gaps = 0.0;                       ///< 0 in an earlier record
-  double left_with_pieces = 0.0;                     ///< blocks of which a piece left; 0 where none may break
-  double limit_with_pieces = 0.0;                    ///< blocks of which a piece ended at a limit, likewise
+  std::vector<std::pair<std::string, double>> ends;    ///< in the order of the record
+  std::optional<std::array<double, 3>> energy_line;    ///< least, P5, P50 [deg]
+  std::optional<GullyFacts> gullies;                   ///< nothing in an earlier record
+  double left_into_gaps = 0.0;                         ///< 0 in an earlier record
+  double left_with_pieces = 0.0;                       ///< blocks of which a piece left; 0 where none may break
+  double limit_with_pieces = 0.0;                      ///< blocks of which a piece ended at a limit, likewise
   RecordedGrid grid;
   std::vector<Screen> screens;  ///< in map coordinates [m]
   std::vector<StandingBarrier> barriers;
@@ -77,8 +77,8 @@ struct RunFacts {
 struct HazardFacts {
   std::string command, object;
   double events_per_year = 0.0, left_per_year = 0.0;
-  std::vector<double> energies, years;  ///< between the classes of intensity [kJ] and of return period [years]
-  std::vector<std::string> class_names;           ///< by number
+  std::vector<double> energies, years;   ///< between the classes of intensity [kJ] and of return period [years]
+  std::vector<std::string> class_names;  ///< by number
   std::vector<std::vector<std::string>> classes;  ///< names: a row for each class of intensity, the shortest time first
   std::vector<std::string> warnings;
   FrequencyFacts frequency;

@@ -92,8 +92,7 @@ std::string size_warning(const Scenario& scenario, std::span<const Preset* const
   }
   const std::string extrapolation = extrapolation_of_block_mass(scenario, diameters);
   if (strange.empty() && extrapolation.empty()) return {};
-  std::string text =
-      std::string(kOtherSizes) + metres(diameters) + (break_up ? ", of pieces less" : "");
+  std::string text = std::string(kOtherSizes) + metres(diameters) + (break_up ? ", of pieces less" : "");
   if (!strange.empty()) text += ", the ground was fitted to others: " + joined(strange);
   if (!extrapolation.empty()) return text + extrapolation;
   return text + (find_effect("block-mass")->acts(scenario.effects)

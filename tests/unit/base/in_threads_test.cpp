@@ -11,7 +11,8 @@ namespace {
 
 TEST(InThreads, CallsEachThreadOnce) {
   std::atomic<int> calls = 0;
-  in_threads(3, [&] { ++calls; }, [] {});
+  in_threads(
+      3, [&] { ++calls; }, [] {});
   EXPECT_EQ(calls, 3);
 }
 

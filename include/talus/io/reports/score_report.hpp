@@ -20,8 +20,8 @@ struct ScoredRows {
   ScoreIntervals intervals;
   Score climatology;  ///< of the same rows
   Interval climatology_interval;
-  Score compared;           ///< as `score`, but rows with too few simulated values score exactly as the climatology
-  Reduction skill;          ///< by which the model, as `compared`, lowers the climatology's error
+  Score compared;   ///< as `score`, but rows with too few simulated values score exactly as the climatology
+  Reduction skill;  ///< by which the model, as `compared`, lowers the climatology's error
   /// Numbers that were fitted to these rows, those that the prior holds counted as less than one (`effective_numbers`);
   /// NaN: some, not counted.
   double fitted = 0.0;
