@@ -33,7 +33,7 @@ struct BoundedClass {
   int value = 0, low = 0, high = 0;  ///< by the frequencies, by their lower and by their upper bounds
   bool undecided = false;            ///< more trajectories may give another class
 };
-/// What may be rarer than the last of `years` by its upper bound alone does not count there.
+/// Events rarer than the last of `years` do not count at the upper bounds: else no place would be free of them.
 ///
 /// @param frequencies  as above
 BoundedClass class_of(const HazardMatrix& matrix, std::span<const Bounded> frequencies);

@@ -7,7 +7,7 @@
 
 namespace talus::io {
 
-/// What the system says of a cause (an `errno`); a full disk is called one.
+/// Text of an error number (`errno`); of that of a full disk "the disk is full".
 std::string system_text(int cause);
 
 /// Creates a file for writing and reading, or empties it. @return its descriptor. Throws std::runtime_error

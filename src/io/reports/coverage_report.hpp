@@ -19,7 +19,7 @@ Json json_of(const std::vector<Coverage>& list);
 Markup coverage_html(const std::vector<Coverage>& list);
 /// How many blocks leave the DEM by the model, and how many can have. Empty where none does, or nobody can say.
 std::string leaving_sentence(const ScoredRows& scored);
-/// The same without its rows: "by the model 8.4 of 50 blocks leave the DEM, none did: p 9e-05".
+/// Words on the test alone: "by the model 8.4 of 50 blocks leave the DEM, none did: p 9e-05".
 std::string leaving_text(const LeavingTest& test);
 Json json_of(const LeavingTest& test);
 /// Warnings, one for each share that a right model does not give.

@@ -201,14 +201,12 @@ Markup objects_html(const ObjectsPart& part, bool pieces, const std::vector<std:
   if (pieces) html += "<p>Blocks broke, and "_html + kHitsOfPieces + ".</p>\n";
   html += "<div class='wide'><table><tr><th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
   for (const std::string& energy : part.thresholds) html += "<th>above "_html + energy + " kJ once in [years]</th>";
-  const bool with_class = std::ranges::any_of(part.objects, [](const auto& o) { return o.hazard_class.has_value(); });
-  const std::vector<std::string>& names = with_class ? classes : std::vector<std::string>();
-  if (!names.empty()) html += "<th>class</th>"_html;
+  if (!classes.empty()) html += "<th>class</th>"_html;
   html += "<th>from</th></tr>\n";
-  for (const std::string& name : part.not_assessed) html += not_assessed_row(name, part, !names.empty());
+  for (const std::string& name : part.not_assessed) html += not_assessed_row(name, part, !classes.empty());
   if (part.not_assessed_left_out > 0)
-    html += not_assessed_row(std::to_string(part.not_assessed_left_out) + " more objects", part, !names.empty());
-  for (const ObjectsPart::Object& object : part.objects) html += object_row(object, names);
+    html += not_assessed_row(std::to_string(part.not_assessed_left_out) + " more objects", part, !classes.empty());
+  for (const ObjectsPart::Object& object : part.objects) html += object_row(object, classes);
   html += "</table></div>\n";
   if (part.left_out > 0)
     html +=

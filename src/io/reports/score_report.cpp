@@ -189,7 +189,7 @@ ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<c
   out.climatology_interval = score_intervals(out.climatology, clusters).total;
   ScoreOptions without_own = how;
   without_own.own_value_too = false;
-  out.compared = score(campaign, runs, ask, without_own);
+  out.compared = folds.empty() ? score(campaign, runs, ask, without_own) : out.score;  // out of fold no row has it
   out.skill = skill_of(out.compared, out.climatology, clusters);
   out.tail_begin = tail_begin(campaign);
   out.tail = tail_score(campaign, runs, ask, folds);

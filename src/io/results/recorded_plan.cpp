@@ -29,7 +29,8 @@ LoadedScenario load_same(const std::string& scenario, const RecordedPlan& plan) 
   RunFlags flags;
   flags.scenario = scenario;
   flags.recorded.folder = plan.folder;
-  const bool elsewhere = fs::path(plan.folder) != fs::absolute(scenario).parent_path();
+  const fs::path now = fs::absolute(scenario).lexically_normal().parent_path();
+  const bool elsewhere = !plan.folder.empty() && fs::path(plan.folder) != now;
   for (const bool beside_first : {false, true}) {
     if (beside_first && !elsewhere) break;
     flags.recorded.beside_first = beside_first;

@@ -40,8 +40,8 @@ struct RunFlags {
   std::optional<std::uint64_t> seed;
   std::vector<std::string> fields;  ///< "diameter=Durchmesser": names of fields of the sources
   bool energy_total = false, bounds = false;
-  /// Of the scenario of results: a file may have been moved or copied together with them. The caller compares what the
-  /// files hold.
+  /// Results whose scenario this is: its files may have been moved or copied together with them. The caller compares
+  /// what the files hold.
   struct Recorded {
     std::string folder;         ///< of the results when they were written; empty: files are as they are named
     bool beside_first = false;  ///< the file beside the results counts also where the named one is there

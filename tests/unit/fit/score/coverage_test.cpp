@@ -151,7 +151,7 @@ TEST_F(CoverageOf, TrialsThatLeftWentFarther) {
   EXPECT_LT(coverage(campaign_, runs_, all_).front().below[1].count + 5, whole.below[1].count);
 }
 
-/// Of 24 blocks 60 of 200 trials leave. None was missing: all stay with (1 - 60/201)^24. One was missing: it leaves
+/// Trials of 24 blocks: 60 of 200 leave. Without a missing block all stay, (1 - 60/201)^24. A missing block leaves
 /// with 61/201, and at most one does.
 TEST(Leaving, IsTheProbabilityThatSoFewLeave) {
   Campaign c = campaign_on_slope(24);
