@@ -11,6 +11,7 @@
 #include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/run/memory_limit.hpp"
 #include "talus/run/write_maps.hpp"
+#include "talus/simulate/tally_of.hpp"
 
 namespace talus::run {
 
@@ -111,10 +112,7 @@ Outcome merge(const MergeRequest& request, Observer& observer) {
   io::OutputFolder folder(request.out, request.overwrite);
   protect_inputs(folder, request, loaded);
   const Scenario& scenario = loaded.scenario;
-  Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds, memory);
-  if (auto weights = AnnualWeights::of(scenario, checkpoints.front().asked().at_most()))
-    tally.keep_hazard(std::move(*weights));
-  if (scenario.output.energy_total) tally.keep_energy_total();
+  Tally tally = tally_of(scenario, checkpoints.front().asked().at_most(), memory);
   io::RunRecord record = new_record(request, loaded, threads);
   observer.begin(0);
   for (const Checkpoint& checkpoint : checkpoints) {

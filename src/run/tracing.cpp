@@ -7,6 +7,7 @@
 #include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/run/in_every_process.hpp"
 #include "talus/simulate/tally/tally_exchange.hpp"
+#include "talus/simulate/tally_of.hpp"
 
 namespace talus::run {
 
@@ -25,14 +26,10 @@ Tracing::Tracing(const RunRequest& request, const RunPlan& plan, const Means& me
       folder_(means.folder),
       observer_(means.observer),
       processes_(means.processes),
-      tally_(plan.loaded.scenario.surface.grid(), plan.loaded.scenario.output.energy_thresholds,
-             plan.loaded.scenario.output.height_thresholds, means.memory),
+      tally_(tally_of(plan.loaded.scenario, plan.rounds.at_most(), means.memory)),
       checkpoints_(opened()),
       sinks_(checkpoint().sinks()),
       simulation_(plan.loaded.scenario, plan.part, plan.rounds.several(), tally_, sinks_, processes_) {
-  if (auto weights = AnnualWeights::of(plan.loaded.scenario, plan.rounds.at_most()))
-    tally_.keep_hazard(std::move(*weights));
-  if (plan.loaded.scenario.output.energy_total) tally_.keep_energy_total();
   in_every_process(processes_, [this] { checkpoint().restore(simulation_, tally_); });
   sinks_.progress = [this](double share) { return observer_.progress(share) && !observer_.interrupted(); };
   sinks_.pause = [this] { return seconds_since_checkpoint() > request_.checkpoint; };

@@ -25,8 +25,8 @@
 #include "talus/run/summary.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/screens/screens.hpp"
-#include "talus/simulate/tally/tally.hpp"
 #include "talus/simulate/tally/visits.hpp"
+#include "talus/simulate/tally_of.hpp"
 #include "talus/terrain/dem_figures.hpp"
 #include "talus/terrain/pits.hpp"
 
@@ -60,12 +60,10 @@ struct Sample {
 Sample trace_sample(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   const talus::World world = scenario.world();
-  talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
-  const auto weights = talus::AnnualWeights::of(scenario);
-  if (weights) tally.keep_hazard(*weights);
-  if (scenario.output.energy_total) tally.keep_energy_total();
+  talus::Tally tally = talus::tally_of(scenario);
+  const talus::AnnualWeights* weights = tally.weights();
   talus::VisitBatch batch(scenario.surface.grid(), talus::length_rules(scenario.output));
-  if (scenario.output.energy_total) batch.keep_energy_total();
+  if (tally.keeps_energy_total()) batch.keep_energy_total();
   const talus::ScreenFinder screens(scenario);
   std::vector<talus::Crossing> crossings;
   talus::GullyStops gullies(scenario);

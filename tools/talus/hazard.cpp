@@ -23,6 +23,7 @@
 #include "talus/products/hazard_maps.hpp"
 #include "talus/run/write_maps.hpp"
 #include "talus/simulate/simulate.hpp"
+#include "talus/simulate/tally_of.hpp"
 
 namespace fs = std::filesystem;
 
@@ -116,15 +117,13 @@ talus::io::LoadedScenario recorded_plan(const Options& options, talus::io::Hazar
 std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, const talus::Scenario& scenario,
                                                        Progress& progress, talus::io::HazardRecord& record) {
   if (record.width > 0.0) check_width(record.header, record.matrix);
-  auto weights = talus::AnnualWeights::of(scenario);
-  if (!weights) throw std::logic_error("a plan with frequencies has no weights");
   if (!options.quiet)
     say("", "repeats the run with another weighting: " + count_text(scenario.released()) +
                 " trajectories of the recorded plan, with the same bits");
   if (const std::string shares = talus::io::class_shares_text(record.frequency); !shares.empty() && !options.quiet)
     say("", shares);
-  talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
-  tally.keep_hazard(std::move(*weights));
+  talus::Tally tally = talus::tally_of(scenario);
+  if (tally.weights() == nullptr) throw std::logic_error("a plan with frequencies has no weights");
   talus::Sinks sinks;
   sinks.progress = [&progress](double share) { return progress.update(share) && !interrupted(); };
   const talus::Totals totals = talus::simulate(scenario, tally, sinks, options.threads);

@@ -16,6 +16,7 @@
 #include "talus/run/stopwatch.hpp"
 #include "talus/run/summary.hpp"
 #include "talus/simulate/simulate.hpp"
+#include "talus/simulate/tally_of.hpp"
 
 namespace {
 
@@ -100,7 +101,7 @@ talus::io::ProfileResults simulate_and_write(const Options& options, const Loade
                                              const fs::path& folder, Stopwatch& watch, talus::io::RunRecord& record) {
   const talus::Scenario& scenario = profile.loaded.scenario;
   Progress progress(Progress::mode_of(options.quiet, options.progress), scenario.released());
-  talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
+  talus::Tally tally = talus::tally_of(scenario);
   Readers readers(profile, folder);
   talus::Sinks sinks = readers.sinks();
   sinks.progress = [&progress](double share) { return progress.update(share) && !interrupted(); };

@@ -73,7 +73,7 @@ class DiagnosisLoop {
   }
 
   std::vector<ResidualRow> residual_of(const FittedModel& fitted) const {
-    return residual_table(campaign_, ResidualSpace(campaign_, fitted.runs, rules_), rows_, rules_);
+    return residual_table(campaign_, ResidualSpace(campaign_, fitted.runs, rules_), fitted.runs, rows_, rules_);
   }
 
   ScoreTestOptions test_options() {

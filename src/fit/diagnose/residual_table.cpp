@@ -9,6 +9,7 @@
 
 #include "rocks.hpp"
 #include "talus/base/random.hpp"
+#include "talus/fit/score/coverage.hpp"
 #include "talus/fit/score/holm.hpp"
 
 namespace talus {
@@ -17,6 +18,7 @@ namespace {
 constexpr std::size_t kManyBlocks = 50;  // from which on Student's t is exact enough for a rank correlation
 constexpr std::uint32_t kEnough = 50;    // arrangements as extreme as the measured one that give its p to 14 %
 constexpr std::uint32_t kMostArrangements = 200'000;
+constexpr double kFewestLeaving = 5.0;  // blocks by the model: none of fewer has a p above exp(-5), 0.7 %
 
 std::vector<double> ranks(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
@@ -152,6 +154,15 @@ std::vector<std::size_t> in_order_of_streams(const Campaign& campaign, const std
   return order;
 }
 
+/// Adds the test whether fewer blocks left the DEM than should.
+void add_leaving(std::vector<ResidualRow>& table, const Campaign& campaign, const std::vector<BlockRuns>& runs,
+                 const std::vector<bool>& rows) {
+  const LeavingTest test = leaving_test(campaign, runs, rows);
+  if (std::isnan(test.p_value) || test.expected < kFewestLeaving) return;
+  table.push_back(
+      {kLeaving, "number", static_cast<double>(test.missing) - test.expected, test.p_value, 1.0, test.blocks});
+}
+
 void correct(std::vector<ResidualRow>& table) {
   std::sort(table.begin(), table.end(),
             [](const ResidualRow& a, const ResidualRow& b) { return a.p_value < b.p_value; });
@@ -188,7 +199,8 @@ double spearman(std::span<const double> a, std::span<const double> b) {
 }
 
 std::vector<ResidualRow> residual_table(const Campaign& campaign, const ResidualSpace& space,
-                                        const std::vector<bool>& rows, const DiagnosisRules& rules) {
+                                        const std::vector<BlockRuns>& runs, const std::vector<bool>& rows,
+                                        const DiagnosisRules& rules) {
   const std::vector<std::size_t> order = in_order_of_streams(campaign, rows);
   std::vector<ResidualRow> table;
   for (std::size_t o = 0; o < space.observables().size(); ++o) {
@@ -230,6 +242,7 @@ std::vector<ResidualRow> residual_table(const Campaign& campaign, const Residual
         add_correlation(table, name, property.name, rank, of);
     }
   }
+  add_leaving(table, campaign, runs, rows);
   correct(table);
   return table;
 }

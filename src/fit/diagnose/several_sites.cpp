@@ -108,7 +108,7 @@ class SitesLoop {
     out.families = test_families({campaign, space, out.base.runs, rows, tests.score_test},
                                  {how.replicates, own.seed, rules_, options_.level_of_round(0)});
     if (!brief_) {
-      out.residual = residual_table(campaign, space, rows, rules_);
+      out.residual = residual_table(campaign, space, out.base.runs, rows, rules_);
       out.limits =
           detection_limits(campaign, axis_of(campaign, out.base.runs), tests.score_test, tests.candidates, rules_);
       complete_limits(out.limits, out.families, {});

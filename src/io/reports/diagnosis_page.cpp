@@ -98,6 +98,7 @@ Markup plots(const Campaign& campaign, const Diagnosis& d, const DiagnosisRules&
   Markup html;
   const std::vector<ResidualRow>& rows = d.rounds.front().residual;
   for (std::size_t i = 0; i < std::min(most, rows.size()); ++i) {
+    if (rows[i].observable == kLeaving) continue;  // a number of all blocks
     const bool by_block = rows[i].covariate == "mean" || rows[i].covariate == "spread";
     const std::string title = rows[i].observable + " against " + (by_block ? "block" : rows[i].covariate);
     const std::string across = by_block ? "number of the block, in the order of the ids" : labelled(rows[i].covariate);

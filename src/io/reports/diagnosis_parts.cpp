@@ -30,6 +30,8 @@ Json effect_json(const FittedEffect& effect) {
           {"objective_gain_ci95", json_of(effect.gain_interval)},
           {"cross_validated_objective_gain", json_of(effect.cross_validated)},
           {"cross_validated_objective_gain_ci95", json_of(effect.cross_validated_interval)},
+          {"unseen_gain", json_of(effect.unseen_gain())},
+          {"unseen_gain_ci95", json_of(effect.unseen_gain_interval())},
           {"confirmed_objective_gain", json_of(effect.confirmation.fitted)},
           {"confirmed_unseen_gain", json_of(effect.confirmation.unseen)},
           {"chosen_share", json_of(effect.chosen_share)}};

@@ -108,6 +108,14 @@ Json error_json(const DiagnosisRecord& record) {
                       record.headline)}};
 }
 
+/// What a significant row of the residual table says.
+std::string misfit_text(const ResidualRow& row) {
+  if (row.observable == kLeaving) return "fewer blocks left the DEM than leave it by the model";
+  if (row.covariate == "mean" || row.covariate == "spread")
+    return "the " + row.covariate + " of " + row.observable + " is not that of the model";
+  return row.observable + " depends on " + row.covariate;
+}
+
 }  // namespace
 
 void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
@@ -155,10 +163,7 @@ std::vector<std::string> small_groups(const DiagnosisRecord& record) {
 std::string residual_text(const DiagnosisRound& round, double level) {
   if (round.residual.empty() || !(round.residual.front().corrected < level)) return "";
   const ResidualRow& row = round.residual.front();
-  const bool of_all = row.covariate == "mean" || row.covariate == "spread";
-  return (of_all ? "the " + row.covariate + " of " + row.observable + " is not that of the model"
-                 : row.observable + " depends on " + row.covariate) +
-         " (p " + with_digits(row.corrected, 1) + ", corrected for the number of rows)";
+  return misfit_text(row) + " (p " + with_digits(row.corrected, 1) + ", corrected for the number of rows)";
 }
 
 std::string diagnosis_json(const DiagnosisRecord& record) {

@@ -70,6 +70,8 @@ Json tail_json(std::span<const BeforeAfter> errors) {
                           {"reduction", json_of(e.tail_reduction.share)},
                           {"ci95", json_of(e.tail_reduction.interval)},
                           {"climatology", json_of(e.after.tail_climatology.total)},
+                          {"skill", json_of(e.after.tail_skill.share)},
+                          {"skill_ci95", json_of(e.after.tail_skill.interval)},
                           {"rows", e.after.tail.rows.size()}};
   return json;
 }
@@ -104,8 +106,7 @@ std::string tail_before_after(const BeforeAfter& e) {
          " rows: error " + score_text(e.before.tail.total) + " before, " + score_text(e.after.tail.total) +
          " after (lower by " + tenths_of_percent(e.tail_reduction.share) +
          " %, 95 %: " + tenths_of_percent(e.tail_reduction.interval.low) + " to " +
-         tenths_of_percent(e.tail_reduction.interval.high) + " %), climatology " +
-         score_text(e.after.tail_climatology.total) + ".";
+         tenths_of_percent(e.tail_reduction.interval.high) + " %); then " + tail_against_climatology(e.after) + ".";
 }
 
 std::string score_text(double score) {

@@ -60,6 +60,8 @@ Json tail_json(const ScoredRows& s) {
           {"score", json_of(s.tail.total, six_decimals)},
           {"ci95", json_of(s.tail_interval, six_decimals)},
           {"climatology", json_of(s.tail_climatology.total, six_decimals)},
+          {"skill", json_of(s.tail_skill.share, six_decimals)},
+          {"skill_ci95", json_of(s.tail_skill.interval, six_decimals)},
           {"rows", s.tail.rows.size()}};
 }
 
@@ -75,6 +77,13 @@ double unseen_share(const Score& score) {
 Reduction skill_of(const Score& score, const Score& climatology, std::span<const std::uint32_t> clusters) {
   if (score.rows.empty() || hardly_simulated(score)) return {};
   return reduction(climatology, score, clusters);
+}
+
+/// "skill 9.3 % (95 %: 1.2 to 17.4 %)".
+std::string skill_text(const Reduction& skill) {
+  return "skill " + with_decimals(100.0 * skill.share, 1) +
+         " % (95 %: " + with_decimals(100.0 * skill.interval.low, 1) + " to " +
+         with_decimals(100.0 * skill.interval.high, 1) + " %)";
 }
 
 /// Skill that a fit of so many numbers shows on its own rows although it has none on others: the price of a number in
@@ -195,6 +204,7 @@ ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<c
   out.tail = tail_score(campaign, runs, ask, folds);
   out.tail_interval = score_intervals(out.tail, clusters).total;
   out.tail_climatology = tail_score_of_climatology(campaign, ask, folds);
+  out.tail_skill = skill_of(out.tail, out.tail_climatology, clusters);
   out.coverage = coverage(campaign, runs, ask);
   out.leaving_trials = leaving_test(campaign, runs, ask);
   out.leaving = blocks_that_leave(campaign, runs, ask);
@@ -234,8 +244,6 @@ std::string skill_sentence(const ScoredRows& s) {
   const std::string errors = with_decimals(s.compared.total, 3) + " against the climatology's " +
                              with_decimals(s.climatology.total, 3) +
                              (s.deposits ? " (blocks anywhere on the mapped ground)" : "");
-  const std::string interval = " (95 %: " + with_decimals(100.0 * s.skill.interval.low, 1) + " to " +
-                               with_decimals(100.0 * s.skill.interval.high, 1) + " %)";
   const std::string rows = rows_in_words(s.rows) + " rows: ";
   if (!(s.skill.share > 0.0) && s.deposits) return rows + "no skill: " + errors;
   if (!(s.skill.share > 0.0))
@@ -248,16 +256,22 @@ std::string skill_sentence(const ScoredRows& s) {
     of_numbers = "; fitting " + with_decimals(s.fitted, 1) + " free numbers to these " +
                  std::to_string(s.compared.rows.size()) + " rows gains some " + with_decimals(100.0 * of_fit, 1) +
                  " % on them without any skill";
-  return rows + "skill " + with_decimals(100.0 * s.skill.share, 1) + " %" + interval + ": " + errors + of_numbers +
+  return rows + skill_text(s.skill) + ": " + errors + of_numbers +
          (s.skill.interval.low > of_fit ? "" : "; it may have no skill");
+}
+
+std::string tail_against_climatology(const ScoredRows& s) {
+  const std::string errors =
+      with_decimals(s.tail.total, 3) + " against the climatology's " + with_decimals(s.tail_climatology.total, 3);
+  if (!(s.tail_skill.share > 0.0)) return errors + ": no skill";
+  return skill_text(s.tail_skill) + ": " + errors + (s.tail_skill.interval.low > 0.0 ? "" : "; it may have no skill");
 }
 
 std::string tail_sentence(const ScoredRows& s) {
   if (s.tail.groups.empty()) return {};
   const std::string beyond = rows_in_words(s.rows) + " rows: run-out beyond " + with_digits(s.tail_begin, 3) + " m: ";
   if (hardly_simulated(s.tail)) return beyond + "cannot be told: too few simulated values";
-  return beyond + with_decimals(s.tail.total, 3) + " against the climatology's " +
-         with_decimals(s.tail_climatology.total, 3) + (s.tail.total < s.tail_climatology.total ? "" : ": no skill");
+  return beyond + tail_against_climatology(s);
 }
 
 std::vector<std::string> unscored_warnings(const ScoredRows& s) {

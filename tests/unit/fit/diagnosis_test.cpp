@@ -147,7 +147,7 @@ TEST(ResidualTable, IsSilentAboutTheModelsOwnCrossingsAsOftenAsItSays) {
   int alarms = 0, tables = 0;
   for (; tables < 200; ++tables) {
     measure(c, model, 100 + tables);
-    for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), rows))
+    for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), runs, rows))
       if (row.observable == "crossed S1" && row.covariate == "mass") alarms += row.p_value < 0.05 ? 1 : 0;
   }
   EXPECT_GT(alarms, 0);
@@ -169,7 +169,7 @@ TEST(ResidualTable, IsSilentAboutEqualValuesAsOftenAsItSays) {
   double share = 0.0;
   for (std::uint32_t table = 0; table < kTables; ++table) {
     for (MeasuredBlock& b : c.blocks) b.passages[0] = Passage{10.0, jump(), kNotGiven};
-    for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), std::vector<bool>(kBlocks, true))) {
+    for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), runs, std::vector<bool>(kBlocks, true))) {
       if (row.observable != "jump S1" || row.covariate != "spread") continue;
       ++tested;
       share += row.statistic / kTables;
@@ -194,6 +194,24 @@ std::vector<BlockRuns> runs_with_jumps(std::size_t blocks, std::size_t trials,
     for (std::size_t t = 0; t < trials; ++t) runs[b].screens[0].jump.push_back(jump(b));
   }
   return runs;
+}
+
+/// 60 of 200 trials of each block leave the terrain, and all 24 blocks were found at rest: p by hand, as in
+/// Leaving.IsTheProbabilityThatSoFewLeave. Where 2.4 blocks leave by the model, no table can tell.
+TEST(ResidualTable, SaysThatFewerBlocksLeftThanShould) {
+  Campaign c = slope_campaign(24);
+  for (MeasuredBlock& b : c.blocks) b.stop = Eigen::Vector2d(b.x, b.y - 100.0);
+  for (const std::uint32_t left : {60U, 20U}) {
+    auto runs = runs_with_jumps(24, 200, [](std::size_t) { return 0.5; });
+    for (BlockRuns& run : runs) run.ends[static_cast<std::size_t>(End::Left)] = left;
+    const auto rows = residual_table(c, ResidualSpace(c, runs), runs, std::vector<bool>(24, true));
+    const auto row = std::ranges::find(rows, kLeaving, &ResidualRow::observable);
+    ASSERT_EQ(row != rows.end(), left == 60);
+    if (left != 60) continue;
+    EXPECT_NEAR(row->statistic, -7.2, 1e-12);
+    EXPECT_NEAR(row->p_value, std::pow(1.0 - 60.0 / 201.0, 24), 1e-15);
+    EXPECT_EQ(row->blocks, 24U);
+  }
 }
 
 /// Of the first block 60 % of the jumps are zero, of the second 40 %, others are uniform: the first ranks above the
@@ -236,7 +254,7 @@ TEST(ResidualTable, IsSilentWhereTheShareOfEqualValuesGoesWithTheMass) {
       c.blocks[b].passages[0] = Passage{kNotGiven, jump(b), kNotGiven};
       c.blocks[b].stream = stream_of_name(std::to_string(b) + " of " + std::to_string(table));
     }
-    const auto rows = residual_table(c, ResidualSpace(c, runs), std::vector<bool>(kBlocks, true));
+    const auto rows = residual_table(c, ResidualSpace(c, runs), runs, std::vector<bool>(kBlocks, true));
     alarms += rows.front().corrected < 0.01 ? 1 : 0;
   }
   std::printf("tables below 1 %%: %.2f %%\n", 100.0 * alarms / kTables);
@@ -257,7 +275,7 @@ TEST(ResidualTable, ThePOfACorrelationOfFewBlocksIsThatOfTheirOrders) {
   DiagnosisRules rules;
   rules.fewest_blocks = 8;
   int rows = 0;
-  for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), std::vector<bool>(8, true), rules)) {
+  for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), runs, std::vector<bool>(8, true), rules)) {
     if (row.observable != "jump S1" || row.covariate != "mass") continue;
     ++rows;
     EXPECT_NEAR(row.p_value, kExact, 5.0 * kExact / std::sqrt(50.0));  // 50 arrangements as large are drawn
@@ -282,7 +300,7 @@ TEST(ResidualTable, ARockCountsOnceAgainstItsMass) {
     }
     const auto runs = runs_with_jumps(blocks, 99, [t = 0](std::size_t) mutable { return 0.01 * (t++ % 99) + 0.005; });
     int rows = 0;
-    for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), std::vector<bool>(blocks, true))) {
+    for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), runs, std::vector<bool>(blocks, true))) {
       EXPECT_FALSE(row.observable == "crossed S1" && row.covariate == "mass");
       if (row.observable != "jump S1" || row.covariate != "mass") continue;
       ++rows;

@@ -27,6 +27,7 @@ struct ScoredRows {
   double fitted = 0.0;
   double tail_begin = 0.0;  ///< run-out beyond which the tail is scored [m]
   Score tail, tail_climatology;
+  Reduction tail_skill;  ///< as `skill`, of the tail
   Interval tail_interval;
   std::vector<Coverage> coverage;
   LeavingTest leaving_trials;
@@ -87,6 +88,8 @@ std::string skill_sentence(const ScoredRows& scored);
 ScoredRows in_large_groups(ScoredRows scored, std::span<const std::uint32_t> clusters);
 /// The error in the far run-outs in words. Empty where it was not scored.
 std::string tail_sentence(const ScoredRows& scored);
+/// Its skill in words. Only where the tail was scored, and simulated.
+std::string tail_against_climatology(const ScoredRows& scored);
 
 /// Both, and the counts of the spread, as lines for the terminal.
 std::string judgement_lines(const ScoredRows& scored);
