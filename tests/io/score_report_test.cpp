@@ -73,6 +73,24 @@ TEST(TailSentence, IsNotOfAModelThatHardlySimulates) {
   EXPECT_EQ(tail_sentence(rows), "held-out rows: run-out beyond 56 m: cannot be told: too few simulated values");
 }
 
+TEST(TailSentence, DoubtsASkillWhoseIntervalHoldsZeroOrOfFittedRows) {
+  ScoredRows rows;
+  rows.rows = "holdout";
+  rows.tail_begin = 56.0;
+  rows.tail = of_two_groups(0.4, 0.4);
+  rows.tail_climatology = of_two_groups(0.5, 0.5);
+  rows.tail_skill = {0.2, {0.05, 0.35}};
+  EXPECT_EQ(tail_sentence(rows),
+            "held-out rows: run-out beyond 56 m: skill 20.0 % (95 %: 5.0 to 35.0 %): 0.400 against the climatology's "
+            "0.500");
+  rows.fitted = kNotGiven;
+  EXPECT_TRUE(tail_sentence(rows).ends_with("; these rows were fitted, which lowers their error without any skill"));
+  rows.tail_skill.interval.low = -0.05;
+  EXPECT_TRUE(tail_sentence(rows).ends_with("; it may have no skill"));
+  rows.tail_skill.share = -0.2;
+  EXPECT_TRUE(tail_sentence(rows).ends_with(": no skill"));
+}
+
 TEST(ScoreWarnings, OfBlocksThatCameToRestButLeaveInTheModel) {
   ScoredRows rows;
   rows.rows = "fit";

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kManyBlocks = 50;  // from which on Student's t is exact enough for a rank correlation
 constexpr std::uint32_t kEnough = 50;    // arrangements as extreme as the measured one that give its p to 14 %
 constexpr std::uint32_t kMostArrangements = 200'000;
-constexpr double kFewestLeaving = 5.0;  // blocks by the model: none of fewer has a p above exp(-5), 0.7 %
+constexpr double kFewestLeaving = 5.0;  // blocks by the model; with fewer the row is hardly ever significant
 
 std::vector<double> ranks(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());

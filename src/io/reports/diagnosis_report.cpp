@@ -108,7 +108,7 @@ Json error_json(const DiagnosisRecord& record) {
                       record.headline)}};
 }
 
-/// What a significant row of the residual table says.
+/// Words for a significant row of the residual table.
 std::string misfit_text(const ResidualRow& row) {
   if (row.observable == kLeaving) return "fewer blocks left the DEM than leave it by the model";
   if (row.covariate == "mean" || row.covariate == "spread")

@@ -79,6 +79,8 @@ Reduction skill_of(const Score& score, const Score& climatology, std::span<const
   return reduction(climatology, score, clusters);
 }
 
+constexpr const char* kWereFitted = "; these rows were fitted, which lowers their error without any skill";
+
 /// "skill 9.3 % (95 %: 1.2 to 17.4 %)".
 std::string skill_text(const Reduction& skill) {
   return "skill " + with_decimals(100.0 * skill.share, 1) +
@@ -251,7 +253,7 @@ std::string skill_sentence(const ScoredRows& s) {
            "fitting blocks, without any model, are " + (s.skill.interval.high < 0.0 ? "nearer" : "as near or nearer");
   const double of_fit = std::isnan(s.fitted) ? 0.0 : skill_of_fit(s);
   std::string of_numbers;
-  if (std::isnan(s.fitted)) of_numbers = "; these rows were fitted, which lowers their error without any skill";
+  if (std::isnan(s.fitted)) of_numbers = kWereFitted;
   if (of_fit > 0.0)
     of_numbers = "; fitting " + with_decimals(s.fitted, 1) + " free numbers to these " +
                  std::to_string(s.compared.rows.size()) + " rows gains some " + with_decimals(100.0 * of_fit, 1) +
@@ -264,7 +266,8 @@ std::string tail_against_climatology(const ScoredRows& s) {
   const std::string errors =
       with_decimals(s.tail.total, 3) + " against the climatology's " + with_decimals(s.tail_climatology.total, 3);
   if (!(s.tail_skill.share > 0.0)) return errors + ": no skill";
-  return skill_text(s.tail_skill) + ": " + errors + (s.tail_skill.interval.low > 0.0 ? "" : "; it may have no skill");
+  return skill_text(s.tail_skill) + ": " + errors + (s.fitted == 0.0 ? "" : kWereFitted) +
+         (s.tail_skill.interval.low > 0.0 ? "" : "; it may have no skill");
 }
 
 std::string tail_sentence(const ScoredRows& s) {
