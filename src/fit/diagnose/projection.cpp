@@ -139,26 +139,20 @@ Projection::Projection(const TestedPlace& place, const MatrixXd& covariance, con
       std::sqrt(covariance_of_estimates(bounded[0], bounded[0]) * covariance_of_estimates(bounded[1], bounded[1]));
 }
 
-Verdict Projection::verdict(const MatrixXd& scores) const {
-  MatrixXd parts = map_ * scores;  // tested parameters x blocks
-  const VectorXd s = parts.rowwise().sum();
-  parts.colwise() -= s / static_cast<double>(parts.cols());
-  MatrixXd variance = parts * parts.transpose();
-  variance.diagonal().array() += 1e-9;
+Verdict Projection::verdict(const VectorXd& scores) const {
+  const VectorXd s = map_ * scores;
   Verdict v;
   v.estimate = VectorXd::Zero(s.size());
-  double best = 0.0;
   for (unsigned mask = 1; mask < 1U << s.size(); ++mask) {  // the bounded optimum is free in some, zero in the others
     const std::vector<Index> free = free_in(mask, s.size());
     const VectorXd part = s(free), estimate = information_(free, free).ldlt().solve(part);
     bool inside = true;
     for (std::size_t i = 0; i < free.size(); ++i)
       if (one_sided_[static_cast<std::size_t>(free[i])] && !(estimate[static_cast<Index>(i)] > 0.0)) inside = false;
-    if (!inside || part.dot(estimate) <= best) continue;
-    best = part.dot(estimate);
+    if (!inside || part.dot(estimate) <= v.statistic) continue;
+    v.statistic = part.dot(estimate);
     v.estimate.setZero();
     v.estimate(free) = estimate;
-    v.statistic = std::max(best, part.dot(variance(free, free).ldlt().solve(part)));
   }
   v.ground = steps_.cwiseProduct(map_.leftCols(steps_.size()).transpose() * v.estimate);
   const auto bounded = static_cast<int>(std::count(one_sided_.begin(), one_sided_.end(), true));

@@ -85,9 +85,9 @@ class Directions {
   }
 
   /// @param trials    by block: the scores of its base trials, one column each
-  /// @param measured  the scores of the measurements, one column per block
-  void score_all(std::vector<MatrixXd>& trials, MatrixXd& measured) const {
-    measured = MatrixXd::Zero(size(), static_cast<Index>(blocks_.size()));
+  /// @param measured  the scores of the measurements, summed over the blocks
+  void score_all(std::vector<MatrixXd>& trials, VectorXd& measured) const {
+    measured = VectorXd::Zero(size());
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       const BlockRuns& runs = base_[blocks_[i]];
       MatrixXd u(size(), runs.trials);
@@ -95,7 +95,7 @@ class Directions {
         u.col(static_cast<Index>(t)) = scores(i, space_.whitened(space_.of_own_trial(blocks_[i], runs, t)));
       const VectorXd mean = u.rowwise().mean();
       u.colwise() -= mean;
-      measured.col(static_cast<Index>(i)) = scores(i, space_.whitened(space_.of_measured(blocks_[i]))) - mean;
+      measured += scores(i, space_.whitened(space_.of_measured(blocks_[i]))) - mean;
       trials.push_back(std::move(u));
     }
   }
@@ -112,13 +112,13 @@ class Directions {
 
 /// The score of every direction in data set number `replicate`: one trial of each block stands in for what was
 /// measured.
-MatrixXd drawn(const std::vector<MatrixXd>& trials, std::span<const std::uint32_t> streams, std::uint64_t seed,
+VectorXd drawn(const std::vector<MatrixXd>& trials, std::span<const std::uint32_t> streams, std::uint64_t seed,
                std::uint32_t replicate) {
-  MatrixXd scores(trials.front().rows(), static_cast<Index>(trials.size()));
+  VectorXd scores = VectorXd::Zero(trials.front().rows());
   for (std::size_t b = 0; b < trials.size(); ++b) {
     const double place =
         draw_of_block(seed, streams[b], replicate, BlockDraw::Trial) * static_cast<double>(trials[b].cols());
-    scores.col(static_cast<Index>(b)) = trials[b].col(static_cast<Index>(place));
+    scores += trials[b].col(static_cast<Index>(place));
   }
   return scores;
 }
@@ -133,7 +133,7 @@ std::vector<std::vector<double>> smallest_drawn(std::size_t effects, const std::
   std::vector<std::vector<double>> smallest(effects, std::vector<double>(n, 1.0));
   for (std::uint32_t replicate = 0; replicate < n; ++replicate) {
     if (replicate % 1000 == 999 && options.proceed && !options.proceed()) throw FitInterrupted{};
-    const MatrixXd scores = drawn(trials, streams, options.seed, replicate);
+    const VectorXd scores = drawn(trials, streams, options.seed, replicate);
     for (std::size_t i = 0; i < projections.size(); ++i) {
       double& best = smallest[effect_of[i]][replicate];
       best = std::min(best, projections[i].verdict(scores).p_value);
@@ -242,7 +242,7 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
   Directions directions(campaign, space, base.runs, observed(base.model), rows);
   add_directions(directions, base, candidates, rules, observed);
   std::vector<MatrixXd> trials;
-  MatrixXd measured;
+  VectorXd measured;
   directions.score_all(trials, measured);
   MatrixXd covariance = MatrixXd::Zero(directions.size(), directions.size());
   for (const MatrixXd& u : trials) covariance += u * u.transpose() / static_cast<double>(u.cols());

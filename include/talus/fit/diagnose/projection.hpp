@@ -29,13 +29,13 @@ class Projection {
   /// @param prior       precision of a step of the base
   Projection(const TestedPlace& place, const Eigen::MatrixXd& covariance, const Eigen::VectorXd& steps, double prior);
 
-  /// @param scores  directions x blocks
+  /// @param scores  by direction, summed over the blocks
   ///
-  /// The estimate is the best one within its bounds. The statistic is the larger of two: with the variance that the
-  /// model gives, and with that of the blocks' own contributions, so that a model which scatters too much does not hide
-  /// an effect. Its distribution is taken as chi-bar squared (chi_bar_tail): p-values that are reported come from data
-  /// sets of the model, which go through the same choice.
-  Verdict verdict(const Eigen::MatrixXd& scores) const;
+  /// The estimate is the best one within its bounds, the statistic that of Rao, with the variance that the model gives.
+  /// (The variance of the blocks' own contributions, which a fit makes too small, gave too many false alarms.) Its
+  /// distribution is taken as chi-bar squared (chi_bar_tail): p-values that are reported come from data sets of the
+  /// model, which go through the same choice.
+  Verdict verdict(const Eigen::VectorXd& scores) const;
 
   /// Standard error of the estimate of each tested parameter if it alone is not zero, in units of its step; under the
   /// model, with the base free to move along.

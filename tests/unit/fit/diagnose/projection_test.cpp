@@ -60,9 +60,7 @@ TEST(ChiBar, TheProjectionUsesTheCorrelationOfTheEstimates) {
   covariance(1, 2) = covariance(2, 1) = 0.6;
   TestedPlace place{{0}, Eigen::MatrixXd::Identity(3, 3).rightCols(2), {true, true}};
   const Projection projection(place, covariance, Eigen::VectorXd::Ones(1), 1.0);
-  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(3, 2);
-  scores.bottomRows(2).setOnes();
-  const Verdict v = projection.verdict(scores);
+  const Verdict v = projection.verdict(Eigen::Vector3d(0.0, 2.0, 2.0));
   EXPECT_NEAR(v.p_value, chi_bar_tail(v.statistic, 2, 2, -0.6), 1e-6);
 }
 
@@ -85,8 +83,7 @@ TEST(Prior, ThatHoldsTheGroundBackIsHardlyTakenForAnEffect) {
   const Eigen::Matrix2d covariance{{4.0, 3.0}, {3.0, 9.0}};
   const Projection projection({{0}, Eigen::Vector2d(0.0, 1.0), {false}}, covariance, Eigen::VectorXd::Ones(1), 1.0);
   const double short_by = 0.6, held = 3.0 * short_by, moved = held / 5.0;
-  Eigen::MatrixXd scores(2, 2);  // of two blocks: half each
-  scores.colwise() = 0.5 * short_by * Eigen::Vector2d(4.0, 3.0);
+  const Eigen::Vector2d scores = short_by * Eigen::Vector2d(4.0, 3.0);
   const double information = 9.0 - 2.0 * 9.0 / 5.0 + 4.0 * 9.0 / 25.0;
   EXPECT_NEAR(projection.verdict(scores).estimate[0], moved / information, 1e-6);
 }
@@ -95,12 +92,10 @@ TEST(Prior, ThatHoldsTheGroundBackIsHardlyTakenForAnEffect) {
 TEST(Projection, TheEstimateStaysWithinItsBounds) {
   TestedPlace place{{0}, Eigen::MatrixXd::Identity(3, 3).rightCols(2), {true, false}};
   const Projection projection(place, Eigen::MatrixXd::Identity(3, 3), Eigen::VectorXd::Ones(1), 1.0);
-  Eigen::MatrixXd scores(3, 4);
-  scores << 0.0, 0.0, 0.0, 0.0, -1.0, -0.5, 0.0, -0.5, -2.0, 0.0, 0.5, -0.5;
-  const Verdict v = projection.verdict(scores);
+  const Verdict v = projection.verdict(Eigen::Vector3d(0.0, -2.0, -2.0));
   EXPECT_EQ(v.estimate[0], 0.0);
   EXPECT_NEAR(v.estimate[1], -2.0, 1e-6);
-  EXPECT_NEAR(v.statistic, 4.0, 1e-6);  // 2^2 under the model; the blocks scatter by 3.5
+  EXPECT_NEAR(v.statistic, 4.0, 1e-6);  // 2^2
   // Half chi squared of one freedom, half of two: 0.5 erfc(sqrt(4/2)) + 0.5 exp(-4/2).
   EXPECT_NEAR(v.p_value, 0.5 * std::erfc(std::sqrt(2.0)) + 0.5 * std::exp(-2.0), 1e-7);
 }
