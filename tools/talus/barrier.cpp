@@ -26,7 +26,7 @@ using talus::io::BarrierReport;
 using talus::io::CrossingTable;
 using talus::io::RunSummary;
 
-struct Options {
+struct BarrierOptions {
   std::string folder, screen, observed, frequency;
   talus::DesignFactors factors;
   double percentile = 95.0, containment = 99.0;  // [%]
@@ -48,7 +48,7 @@ constexpr Bounds kVolume{"--volume", "m3", "of the design block", 0.0, 65000.0, 
 constexpr Bounds kDensity{"--density", "kg/m3", "mass per volume of the rock", 500.0, 8000.0};
 
 /// Throws InputError if a number on the command line is out of bounds.
-void check_numbers(const Options& o) {
+void check_numbers(const BarrierOptions& o) {
   const std::pair<Bounds, std::optional<double>> all[] = {
       {factor("--gTr", "quality of the trajectories"), o.factors.trajectory},
       {factor("--gDp", "quality of the topography"), o.factors.topography},
@@ -81,7 +81,7 @@ std::string only_screen(const RunSummary& run) {
   return ids.empty() ? "" : ids.front();
 }
 
-const talus::Screen& screen_of(const RunSummary& run, const Options& o) {
+const talus::Screen& screen_of(const RunSummary& run, const BarrierOptions& o) {
   for (const talus::Screen& screen : run.screens)
     if (screen.id == o.screen) return screen;
   throw talus::InputError("--screen: the run has no screen '" + o.screen + "'" +
@@ -89,12 +89,12 @@ const talus::Screen& screen_of(const RunSummary& run, const Options& o) {
 }
 
 /// Share of the screen where the DEM has no height.
-double without_height(const RunSummary& run, const Options& o) {
+double without_height(const RunSummary& run, const BarrierOptions& o) {
   return run.without_height[static_cast<std::size_t>(&screen_of(run, o) - run.screens.data())];
 }
 
 /// The crossings of the run.
-CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
+CrossingTable simulated_crossings(const RunSummary& run, const BarrierOptions& o) {
   const fs::path file = fs::path(o.folder) / "screens.csv";
   if (run.screens.empty() || !fs::exists(file))
     throw talus::InputError(o.folder +
@@ -129,7 +129,8 @@ CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
 }
 
 /// Notes the rows of screens that the run does not have: a misspelt name would lose what was observed.
-void note_other_screens(const CrossingTable& observed, const RunSummary& run, const Options& o, BarrierReport& report) {
+void note_other_screens(const CrossingTable& observed, const RunSummary& run, const BarrierOptions& o,
+                        BarrierReport& report) {
   const std::vector<std::string> ids = screen_ids(run);
   for (const auto& [id, rows] : observed.others)
     if (std::ranges::find(ids, id) == ids.end())
@@ -137,7 +138,7 @@ void note_other_screens(const CrossingTable& observed, const RunSummary& run, co
                              "', which the run does not have: they count nowhere. Is it " + talus::joined(ids) + "?");
 }
 
-CrossingTable observed_crossings(const Options& o) {
+CrossingTable observed_crossings(const BarrierOptions& o) {
   CrossingTable crossings = talus::io::read_crossings(o.observed, o.screen);
   if (crossings.count == 0)
     throw talus::InputError(
@@ -148,7 +149,7 @@ CrossingTable observed_crossings(const Options& o) {
 }
 
 /// Notes rows that repeat a block: an inspector who gives all one id would lose the others.
-void note_repeated_rows(const CrossingTable& observed, const Options& o, BarrierReport& report) {
+void note_repeated_rows(const CrossingTable& observed, const BarrierOptions& o, BarrierReport& report) {
   if (observed.rows > observed.count)
     report.notes.push_back(o.observed + ": " + std::to_string(observed.rows - observed.count) + " of " +
                            std::to_string(observed.rows) +
@@ -156,8 +157,8 @@ void note_repeated_rows(const CrossingTable& observed, const Options& o, Barrier
 }
 
 /// The blocks and pieces at the line with their weights: 0 for those that never fall.
-std::vector<talus::LineCrossing> crossings_of(const CrossingTable& table, const RunSummary& run, const Options& o,
-                                              BarrierReport& report, Weighting& weighting) {
+std::vector<talus::LineCrossing> crossings_of(const CrossingTable& table, const RunSummary& run,
+                                              const BarrierOptions& o, BarrierReport& report, Weighting& weighting) {
   const talus::Screen& screen = screen_of(run, o);
   std::vector<talus::LineCrossing> crossings;
   for (std::size_t i = 0; i < table.count; ++i)
@@ -208,7 +209,7 @@ std::optional<std::string> again_note(const BarrierReport& report, std::size_t b
 }
 
 /// ", but in the laws and shares of the values": where crossings of sources with a frequency of 0 count all the same.
-std::string where_all_count(const Options& o, const BarrierReport& report) {
+std::string where_all_count(const BarrierOptions& o, const BarrierReport& report) {
   std::string text;
   if (o.observed.empty()) text = "in the laws and shares of the values";
   if (report.width) text += std::string(text.empty() ? "" : " and ") + "in the width by the map";
@@ -216,7 +217,7 @@ std::string where_all_count(const Options& o, const BarrierReport& report) {
 }
 
 /// Leaves out what never falls. Throws InputError if the others are too few for the percentile.
-void keep_falling(std::vector<talus::LineCrossing>& crossings, const Options& o, BarrierReport& report,
+void keep_falling(std::vector<talus::LineCrossing>& crossings, const BarrierOptions& o, BarrierReport& report,
                   Weighting& weighting) {
   report.never = std::erase_if(crossings, [](const auto& c) { return !(c.weight > 0.0); });
   if (report.never > 0)
@@ -341,7 +342,7 @@ std::optional<std::string> end_note(const talus::io::BarrierWidth& width, double
 
 /// @param all  crossings, also later ones of a block
 void add_stretches(BarrierReport& report, std::span<const talus::LineCrossing> all, std::size_t blocks,
-                   const talus::DesignBlockRule& rule, const RunSummary& run, const Options& o) {
+                   const talus::DesignBlockRule& rule, const RunSummary& run, const BarrierOptions& o) {
   std::vector<double> parts;
   for (const auto& line : screen_of(run, o).lines) parts.push_back(talus::length_of(line));
   if (const auto note = end_note(*report.width, std::accumulate(parts.begin(), parts.end(), 0.0)))
@@ -355,7 +356,7 @@ void add_stretches(BarrierReport& report, std::span<const talus::LineCrossing> a
 
 /// @param all  crossings, also later ones of a block
 void add_design(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
-                std::span<const talus::LineCrossing> all, const RunSummary& run, const Options& o) {
+                std::span<const talus::LineCrossing> all, const RunSummary& run, const BarrierOptions& o) {
   report.factors = o.factors;
   report.factors.percentile = 0.01 * o.percentile;
   const talus::DesignBlockRule rule{o.volume, o.density.value_or(run.density), run.density};
@@ -379,7 +380,7 @@ void add_crossings_per_year(BarrierReport& report, const Weighting& weighting) {
   report.per_year = weighting.per_year(weighting.line);
 }
 
-int design(Options o) {
+int design(BarrierOptions o) {
   check_numbers(o);
   const RunSummary run = talus::io::read_run(o.folder);
   if (o.screen.empty()) o.screen = only_screen(run);
@@ -431,7 +432,7 @@ int design(Options o) {
 }  // namespace
 
 void add_barrier(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<BarrierOptions>();
   CLI::App* command = app.add_subcommand("barrier", "Design values of a barrier at a screen of a run");
   with(command->add_option("folder", o->folder, "folder of results that talus run has written, with screens")
            ->required(),

@@ -18,7 +18,7 @@
 
 namespace {
 
-struct Options : CampaignCommand {
+struct CalibrateOptions : CampaignCommand {
   std::vector<std::string> fit{"theta_scale", "psi_scale", "En50", "Et50"};
   std::string parameters;          // file of the model from which the fit starts; empty: the default preset
   std::vector<std::string> share;  // parameters that several campaigns share
@@ -72,7 +72,7 @@ void print_summary(const talus::io::Calibration& c, const std::string& folder) {
   print("written: %s\n", folder.c_str());
 }
 
-int calibrate(const Options& options) {
+int calibrate(const CalibrateOptions& options) {
   if (options.campaigns.size() > 1)
     return calibrate_sites(options, options.how, options.parameters, options.fit, options.share);
   if (!options.share.empty())
@@ -156,7 +156,7 @@ void choose_parameters(const talus::Campaign& campaign, const std::vector<std::s
 }
 
 void add_calibrate(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command = app.add_subcommand("calibrate", "Fit the parameters of the ground to measured data");
   const int fewest_trials = static_cast<int>(talus::DiagnosisRules{}.fewest_of_one);
   options->add_to(*command, options->how.trials, fewest_trials, options->fit, options->how.seed, options->how.threads);

@@ -7,7 +7,7 @@
 
 namespace {
 
-constexpr std::uint32_t kScoreTrials = 100;
+constexpr std::uint32_t kFitScoreTrials = 100;
 
 /// The work of one calibration of several campaigns.
 class SitesFit {
@@ -100,10 +100,11 @@ int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how
   take_start(start, opened.folder, c);
   const std::size_t together = share.empty() ? 1 : opened.sites.size();
   for (std::size_t i = 0; i < opened.sites.size(); i += together) work.fit(i, together);
-  talus::ObserveOptions unseen{
-      .trials = kScoreTrials, .seed = how.seed, .first_trial = talus::kUnseen, .threads = how.threads, .proceed = [] {
-        return !interrupted();
-      }};
+  talus::ObserveOptions unseen{.trials = kFitScoreTrials,
+                               .seed = how.seed,
+                               .first_trial = talus::kUnseen,
+                               .threads = how.threads,
+                               .proceed = [] { return !interrupted(); }};
   c.evidence = talus::io::evidence_of_sites(opened.sites, work.start(), work.models(), unseen);
   if (interrupted()) stop_interrupted();
   for (std::size_t i = 0; i < opened.sites.size(); ++i) c.evidence[i].errors.front().after.fitted = talus::kNotGiven;

@@ -38,7 +38,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kSampleSeconds = 1.5;
 
-struct Options {
+struct CheckOptions {
   talus::io::RunFlags flags;
   std::string pits;
   unsigned threads = 0;
@@ -264,7 +264,7 @@ void print_plan(const LoadedScenario& loaded, unsigned threads) {
 }
 
 /// Writes the map of the pits, if it is asked for.
-void write_pits(const Options& options, const LoadedScenario& loaded) {
+void write_pits(const CheckOptions& options, const LoadedScenario& loaded) {
   if (options.pits.empty()) return;
   talus::io::OutputFile out(options.pits, ".gpkg", options.overwrite);
   for (const talus::io::InputFile& input : loaded.inputs) out.protect(input.path);
@@ -274,7 +274,7 @@ void write_pits(const Options& options, const LoadedScenario& loaded) {
   if (!options.quiet) print("written: %s\n", options.pits.c_str());
 }
 
-int check(const Options& options) {
+int check(const CheckOptions& options) {
   std::vector<std::string> faults;
   try {
     const LoadedScenario loaded = talus::io::load_scenario(options.flags, &faults);
@@ -293,7 +293,7 @@ int check(const Options& options) {
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckOptions>();
   CLI::App* command =
       app.add_subcommand("check", "Check a scenario and print the plan; writes nothing, but for --pits");
   add_scenario_options(*command, options->flags);

@@ -17,7 +17,7 @@
 
 namespace {
 
-struct Options : CampaignCommand {
+struct DiagnoseOptions : CampaignCommand {
   talus::DiagnoseOptions how;
   std::string parameters;  // file of the ground from which the fit starts; empty: the default preset
   bool nested = false, no_nested = false, quick_folds = false, no_quick_folds = false;
@@ -92,7 +92,7 @@ void write_results(const talus::io::OutputFolder& folder, const talus::io::Loade
 }
 
 /// Settles whether the loop is repeated without each fold: by default where nothing is held out.
-void choose_folds(const Options& options, const talus::Campaign& campaign, talus::DiagnoseOptions& how) {
+void choose_folds(const DiagnoseOptions& options, const talus::Campaign& campaign, talus::DiagnoseOptions& how) {
   if (options.nested && options.no_nested) throw talus::InputError("flags --nested and --no-nested exclude each other");
   const auto fitting = talus::fitting_rows(campaign);
   const bool all = std::count(fitting.begin(), fitting.end(), false) == 0;
@@ -102,7 +102,7 @@ void choose_folds(const Options& options, const talus::Campaign& campaign, talus
   if (options.quick_folds || options.no_quick_folds) how.naming_in_folds = options.no_quick_folds;
 }
 
-int diagnose(const Options& options) {
+int diagnose(const DiagnoseOptions& options) {
   if (options.campaigns.size() > 1) {
     if (!options.of_one.empty())
       throw talus::InputError("flag " + options.of_one.front() + ": not with several campaigns" +
@@ -162,7 +162,7 @@ talus::Model start_ground(const std::string& file, const talus::Campaign& campai
 }
 
 void add_diagnose(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<DiagnoseOptions>();
   CLI::App* command =
       app.add_subcommand("diagnose", "Find what a fitted model leaves of measured data, and which effect explains it");
   talus::DiagnoseOptions& how = options->how;

@@ -9,7 +9,7 @@
 
 namespace {
 
-constexpr std::uint32_t kScoreTrials = 200;
+constexpr std::uint32_t kDiagnosisScoreTrials = 200;
 
 void write_results(const OpenedSites& opened, const talus::io::SitesRecord& record) {
   const std::filesystem::path& out = opened.folder.temporary();
@@ -57,7 +57,9 @@ int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOption
     stop_interrupted();
   }
   talus::ObserveOptions unseen{
-      .trials = kScoreTrials, .seed = how.seed + 1, .threads = how.threads, .proceed = [] { return !interrupted(); }};
+      .trials = kDiagnosisScoreTrials, .seed = how.seed + 1, .threads = how.threads, .proceed = [] {
+        return !interrupted();
+      }};
   talus::io::open_holdout(opened.sites, record, unseen);
   if (interrupted()) stop_interrupted();
   warn_of_sites(command, record, record.evidence);

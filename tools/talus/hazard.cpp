@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Options {
+struct HazardOptions {
   std::string folder, matrix, objects, frequency, width_field, name_field;
   double width = 0.0;  // of the object [m]; 0: the cell
   int threads = 0;
@@ -100,21 +100,21 @@ std::vector<std::string> warnings_of(const talus::HazardMatrix& matrix, const ta
 }
 
 /// A warning if the objects count passages that the maps leave out; empty if not.
-std::string warning_of_objects(const Options& options, const talus::io::HazardHeader& header) {
+std::string warning_of_objects(const HazardOptions& options, const talus::io::HazardHeader& header) {
   if (options.objects.empty() || !(header.passages_below > 0.0)) return {};
   return "--objects counts passages at any height: [output] passages_below = " + talus::text_of(header.passages_below) +
          " m holds for passage densities and the maps of --width only";
 }
 
 /// The recorded plan, with the weighting that is asked for, which goes into the record.
-talus::io::LoadedScenario recorded_plan(const Options& options, talus::io::HazardRecord& record) {
+talus::io::LoadedScenario recorded_plan(const HazardOptions& options, talus::io::HazardRecord& record) {
   talus::io::LoadedScenario loaded = talus::io::recorded_plan(options.folder, record.header.plan);
   if (!options.frequency.empty()) record.frequency = talus::io::apply_weighting(options.frequency, loaded.scenario);
   return loaded;
 }
 
 /// Traces the recorded plan again with other weights and evaluates every cell.
-std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, const talus::Scenario& scenario,
+std::unique_ptr<talus::HazardSurvey> reweighted_survey(const HazardOptions& options, const talus::Scenario& scenario,
                                                        Progress& progress, talus::io::HazardRecord& record) {
   if (record.width > 0.0) check_width(record.header, record.matrix);
   if (!options.quiet)
@@ -149,7 +149,7 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
 }
 
 /// Runs the recorded plan again and writes the hazard of each object. Returns how often each is hit, in words.
-std::vector<std::string> write_objects(const Options& options, const talus::io::LoadedScenario& loaded,
+std::vector<std::string> write_objects(const HazardOptions& options, const talus::io::LoadedScenario& loaded,
                                        const talus::io::ObjectLayer& layer, const fs::path& folder,
                                        talus::io::HazardRecord& record) {
   for (const std::string& warning : layer.warnings()) record.warnings.push_back(warning);
@@ -190,7 +190,7 @@ std::string object_text(const talus::io::HazardRecord& record) {
 }
 
 /// The record of what the command line asks for, still without results. Throws InputError for files that are not there.
-talus::io::HazardRecord asked_of(const Options& options) {
+talus::io::HazardRecord asked_of(const HazardOptions& options) {
   talus::io::HazardRecord record;
   record.command = command_line();
   record.matrix_file = options.matrix;
@@ -203,7 +203,7 @@ talus::io::HazardRecord asked_of(const Options& options) {
   return record;
 }
 
-talus::io::ObjectFields object_fields(const Options& options) {
+talus::io::ObjectFields object_fields(const HazardOptions& options) {
   talus::io::ObjectFields fields;
   fields.line_width = options.width;
   fields.width = options.width_field;
@@ -211,7 +211,7 @@ talus::io::ObjectFields object_fields(const Options& options) {
   return fields;
 }
 
-int hazard(const Options& options) {
+int hazard(const HazardOptions& options) {
   catch_signals();
   const fs::path folder(options.folder), file = tally_file(folder);
   talus::io::HazardRecord record = asked_of(options);
@@ -270,7 +270,7 @@ int hazard(const Options& options) {
 }  // namespace
 
 void add_hazard(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<HazardOptions>();
   CLI::App* command =
       app.add_subcommand("hazard", "Annual frequencies, return periods and classes of hazard from a run");
   with(command->add_option("folder", options->folder, "OUT of a run whose sources have frequencies")->required(),

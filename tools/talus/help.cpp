@@ -156,14 +156,14 @@ Json results_json() {
   return json;
 }
 
-struct Options {
+struct HelpOptions {
   std::string command;
   std::string program;  // the help of the program
   bool json = false;
 };
 
 /// The help that is asked for. Throws InputError if there is no such command.
-std::string help_text(const CLI::App& app, const Options& options) {
+std::string help_text(const CLI::App& app, const HelpOptions& options) {
   if (options.json) return help_json(app);
   if (options.command.empty()) return options.program;
   std::vector<std::string> names;
@@ -185,7 +185,7 @@ std::string help_json(const CLI::App& app) {
 }
 
 void add_help(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<HelpOptions>();
   CLI::App* command = app.add_subcommand("help", "Print this help, or that of a command");
   command->add_option("command", options->command, "name of a command");
   command->add_flag("--json", options->json,

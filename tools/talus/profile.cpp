@@ -28,7 +28,7 @@ using talus::run::Stopwatch;
 constexpr std::uint32_t kDrawn = 60;  // paths in the drawing
 constexpr double kPathSpacing = 1.0;  // largest distance between written points of a flight [m]
 
-struct Options {
+struct ProfileOptions {
   talus::io::RunFlags flags;
   std::string out, progress;
   int threads = 0;
@@ -97,7 +97,7 @@ void summarise(const talus::Totals& totals, const talus::BinDistribution& runout
 }
 
 /// Traces, scores and writes everything into `folder`; fills the record.
-talus::io::ProfileResults simulate_and_write(const Options& options, const LoadedProfile& profile,
+talus::io::ProfileResults simulate_and_write(const ProfileOptions& options, const LoadedProfile& profile,
                                              const fs::path& folder, Stopwatch& watch, talus::io::RunRecord& record) {
   const talus::Scenario& scenario = profile.loaded.scenario;
   Progress progress(Progress::mode_of(options.quiet, options.progress), scenario.released());
@@ -131,7 +131,7 @@ void say_of_input(const talus::io::LoadedScenario& loaded) {
   for (const std::string& warning : loaded.warnings) say("warning", warning);
 }
 
-int run_profile(const Options& options) {
+int run_profile(const ProfileOptions& options) {
   Stopwatch watch;
   const LoadedProfile profile = talus::io::load_profile(options.flags);
   catch_signals();
@@ -161,7 +161,7 @@ int run_profile(const Options& options) {
 }  // namespace
 
 void add_profile(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ProfileOptions>();
   CLI::App* command = app.add_subcommand("profile", "Simulate in two dimensions, on a profile");
   with(command->add_option("profile", options->flags.scenario, "file of the profile (TOML): docs/profile.md")
            ->required(),

@@ -11,13 +11,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Options {
+struct ReportOptions {
   talus::io::RunPageRequest request;
   std::string folder, out;
   bool overwrite = false, quiet = false;
 };
 
-int report(Options options) {
+int report(ReportOptions options) {
   options.request.folder = options.folder;
   const fs::path file = options.out.empty() ? fs::path(options.folder) / "report.html" : fs::path(options.out);
   if (file.extension() != ".html")
@@ -36,7 +36,7 @@ int report(Options options) {
 }  // namespace
 
 void add_report(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReportOptions>();
   CLI::App* command = app.add_subcommand("report", "One self-contained HTML page on a run: maps, tables, checklist");
   with(command->add_option("folder", options->folder, "OUT of talus run, with what hazard and barrier have added")
            ->required(),

@@ -9,19 +9,19 @@
 
 namespace {
 
-struct Options {
+struct RunOptions {
   talus::run::RunRequest request;
   std::string progress;
   bool quiet = false;
 };
 
 /// The observer of a process. Of several processes only the leader prints.
-TerminalObserver observer_of(const Options& options, const talus::ProcessGroup& processes) {
+TerminalObserver observer_of(const RunOptions& options, const talus::ProcessGroup& processes) {
   const bool leads = processes.leads(), quiet = options.quiet || !leads;
   return {Progress::mode_of(quiet, leads ? options.progress : ""), quiet};
 }
 
-int run(const Options& options, talus::ProcessGroup& processes) {
+int run(const RunOptions& options, talus::ProcessGroup& processes) {
   if (processes.size() > 1) catch_signals();  // they end together
   talus::run::RunRequest request = options.request;
   request.command = command_line();
@@ -90,7 +90,7 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
 }
 
 void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunOptions>();
   talus::run::RunRequest& request = options->request;
   CLI::App* command = app.add_subcommand("run", "Simulate a scenario and write its hazard maps");
   add_scenario_options(*command, request.flags);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kFewestTrials = 100;  // for each block of a score that is reported
 
-struct Options {
+struct ScoreOptions {
   std::string campaign, parameters, rows = "all", dump;
   std::optional<std::string> surface;
   std::uint32_t trials = 100;
@@ -23,7 +23,7 @@ struct Options {
   bool json = false, quiet = false;
 };
 
-int score_model(const Options& options) {
+int score_model(const ScoreOptions& options) {
   talus::io::LoadedCampaign loaded = talus::io::read_campaign(options.campaign, options.surface);
   const talus::Campaign& campaign = loaded.campaign;
   const talus::Model model = talus::io::read_model(options.parameters, campaign, &loaded.warnings);
@@ -89,7 +89,7 @@ int score_model(const Options& options) {
 }  // namespace
 
 void add_score(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ScoreOptions>();
   CLI::App* command = app.add_subcommand("score", "Say how far a model is from measured data, group by group");
   with(command->add_option("campaign", options->campaign, "measured data: campaign.toml")->required(),
        file_of({"toml"}));

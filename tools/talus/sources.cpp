@@ -16,7 +16,7 @@ namespace {
 constexpr talus::Bounds kSlope{"slope", "deg", "cells at least this steep are candidate sources",
                                0.0,     90.0,  talus::Bounds::Between};
 
-struct Options {
+struct SourcesOptions {
   std::string dem, out;
   std::optional<double> slope;  // [deg]
   bool overwrite = false, quiet = false;
@@ -31,7 +31,7 @@ void summarise(const talus::io::SourceCells& found, const talus::Grid& grid, con
               ") are in " + out + "; these are candidates by steepness alone: look at them before a run");
 }
 
-int find_sources(const Options& options) {
+int find_sources(const SourcesOptions& options) {
   if (options.slope)
     if (const auto rule = talus::fault_of(kSlope, *options.slope))
       throw talus::InputError("flag --slope = " + talus::with_digits(*options.slope, 6) + ": " + *rule);
@@ -62,7 +62,7 @@ int find_sources(const Options& options) {
 }  // namespace
 
 void add_sources(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SourcesOptions>();
   CLI::App* command = app.add_subcommand("sources", "Find candidate source cells by the steepness of the terrain");
   with(command->add_option("--dem", options->dem, "terrain: a raster in a projected system in metres")->required(),
        file_of({"raster"}));

@@ -13,7 +13,7 @@
 
 namespace {
 
-struct Options {
+struct TraceOptions {
   std::string scenario, out;
   std::int64_t source = 0, block = 0;
 };
@@ -57,7 +57,7 @@ void write_geopackage(talus::io::OutputFile& out, const talus::io::LoadedScenari
   out.commit();
 }
 
-int trace_one(const Options& options) {
+int trace_one(const TraceOptions& options) {
   std::optional<talus::io::OutputFile> out;
   if (!options.out.empty()) out.emplace(options.out, ".gpkg", false);
   const talus::io::LoadedScenario loaded = talus::io::recorded_or_own_plan(options.scenario);
@@ -80,7 +80,7 @@ int trace_one(const Options& options) {
 }  // namespace
 
 void add_trace(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TraceOptions>();
   CLI::App* command = app.add_subcommand("trace", "Replay one trajectory of a run, bit for bit");
   with(
       command->add_option("scenario", options->scenario, "scenario file; every run leaves its own in OUT/scenario.toml")
