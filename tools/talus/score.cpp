@@ -23,6 +23,31 @@ struct ScoreOptions {
   bool json = false, quiet = false;
 };
 
+/// The scores of the rows that are asked for: the fitting rows first.
+std::vector<talus::io::ScoredRows> scores_of(const std::string& rows, const talus::Campaign& campaign,
+                                             const std::vector<talus::BlockRuns>& runs) {
+  std::vector<talus::io::ScoredRows> scores;
+  if (rows != "holdout") scores.push_back(talus::io::scored("fit", campaign, runs, talus::fitting_rows(campaign)));
+  if (rows != "fit") scores.push_back(talus::io::scored("holdout", campaign, runs, talus::holdout_rows(campaign)));
+  return scores;
+}
+
+/// @throws InputError  where there is no row that gives the spread of the measurements, or none to score
+void refuse_nothing(const ScoreOptions& options, const talus::Campaign& campaign,
+                    const std::vector<talus::io::ScoredRows>& scores) {
+  const std::vector<bool> fitting = talus::fitting_rows(campaign);
+  if (std::ranges::count(fitting, true) == 0)
+    throw talus::InputError(
+        options.campaign + ": nothing to score: all " + std::to_string(fitting.size()) +
+        " blocks are held out (holdout = 1), must be some that are not: these give the spread of the "
+        "measurements, in which errors are counted");
+  if (std::all_of(scores.begin(), scores.end(), [](const auto& s) { return s.score.groups.empty(); }))
+    throw talus::InputError(options.campaign + ": nothing to score: no quantity has values of " +
+                            std::to_string(talus::kFewestRows) +
+                            " of the asked blocks that differ: measure more, or see by --dump what the model does" +
+                            (options.rows == "all" ? "" : ", or ask for --rows all"));
+}
+
 int score_model(const ScoreOptions& options) {
   talus::io::LoadedCampaign loaded = talus::io::read_campaign(options.campaign, options.surface);
   const talus::Campaign& campaign = loaded.campaign;
@@ -52,22 +77,8 @@ int score_model(const ScoreOptions& options) {
   const std::vector<talus::BlockRuns> runs = talus::observe(campaign, model, how);
   if (interrupted()) stop_interrupted();
 
-  std::vector<talus::io::ScoredRows> scores;
-  if (options.rows != "holdout")
-    scores.push_back(talus::io::scored("fit", campaign, runs, talus::fitting_rows(campaign)));
-  if (options.rows != "fit")
-    scores.push_back(talus::io::scored("holdout", campaign, runs, talus::holdout_rows(campaign)));
-  const std::vector<bool> fitting = talus::fitting_rows(campaign);
-  if (!dump && std::ranges::count(fitting, true) == 0)
-    throw talus::InputError(
-        options.campaign + ": nothing to score: all " + std::to_string(fitting.size()) +
-        " blocks are held out (holdout = 1), must be some that are not: these give the spread of the "
-        "measurements, in which errors are counted");
-  if (!dump && std::all_of(scores.begin(), scores.end(), [](const auto& s) { return s.score.groups.empty(); }))
-    throw talus::InputError(options.campaign + ": nothing to score: no quantity has values of " +
-                            std::to_string(talus::kFewestRows) +
-                            " of the asked blocks that differ: measure more, or see by --dump what the model does" +
-                            (options.rows == "all" ? "" : ", or ask for --rows all"));
+  const std::vector<talus::io::ScoredRows> scores = scores_of(options.rows, campaign, runs);
+  if (!dump) refuse_nothing(options, campaign, scores);
   std::vector<std::string> warnings = loaded.warnings;
   for (const talus::io::ScoredRows& s : scores)
     for (const std::string& warning : talus::io::score_warnings(s)) {
