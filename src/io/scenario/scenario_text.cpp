@@ -55,8 +55,9 @@ std::string diameter_text(const Blocks& blocks) {
 struct Line {
   std::string table;  // "ground.zones.\"2\""; empty: at the top
   std::string key, value, unit, source;
-  std::string full;     // "ground.zones.2.En50"
-  bool written = true;  // in the file; a parameter that follows from a preset is written only in its zone
+  std::string full;      // "ground.zones.2.En50"
+  bool is_text = false;  // the file has it in quotation marks
+  bool written = true;   // in the file; a parameter that follows from a preset is written only in its zone
 };
 
 class Lines {
@@ -65,12 +66,12 @@ class Lines {
     if (!spec.vrt_folders.empty()) add("", "vrt_folders", texts(spec.vrt_folders), "");
     file("", "dem", spec.dem);
     if (spec.profile) terrain(*spec.profile);
-    if (!spec.dem.path.empty()) add("", "surface", toml_text(std::string(name_of(spec.surface))), "");
+    if (!spec.dem.path.empty()) add_text("", "surface", std::string(name_of(spec.surface)));
     fields("");
     file("sources", "file", spec.sources);
     if (spec.profile) sources(*spec.profile);
     add("sources", "release_height", range_text(spec.release_height), "m");
-    for (const auto& [name, field] : spec.source_fields) add("sources.fields", name, toml_text(field.field), "");
+    for (const auto& [name, field] : spec.source_fields) add_text("sources.fields", name, field.field);
     fields("blocks");
     const Blocks& blocks = spec.values.blocks;
     if (!blocks.classes.empty() || blocks.power_law.volume.high != 0.0)
@@ -78,7 +79,7 @@ class Lines {
     add("blocks", "axes", list_text({blocks.axes[0], blocks.axes[1], blocks.axes[2]}), "");
     ground();
     fields("model");
-    add("model", "roughness", toml_text(spec.values.impact.roughness == Roughness::Clamp ? "clamp" : "resample"), "");
+    add_text("model", "roughness", spec.values.impact.roughness == Roughness::Clamp ? "clamp" : "resample");
     fields("output");
     if (spec.profile) {
       add("output", "bin", text_of(spec.profile->bin), "m");
@@ -89,7 +90,7 @@ class Lines {
       add("output", "passages_below", text_of(spec.values.output.passages_below), "m");
       add("output", "energy_total", spec.values.output.energy_total ? "true" : "false", "");
       add("output", "bounds", spec.values.output.bounds ? "true" : "false", "");
-      add("output", "vectors", toml_text(std::string(name_of(spec.values.output.vectors))), "");
+      add_text("output", "vectors", std::string(name_of(spec.values.output.vectors)));
     }
     file("screens", "file", spec.screens);
     file("barriers", "file", spec.barriers);
@@ -105,6 +106,11 @@ class Lines {
     lines_.push_back({table, key, value, unit, spec_.origin(full), full});
   }
 
+  void add_text(const std::string& table, const std::string& key, const std::string& text) {
+    add(table, key, text, "");
+    lines_.back().is_text = true;
+  }
+
   static std::string texts(const std::vector<std::string>& list) {
     std::vector<std::string> quoted;
     for (const std::string& text : list) quoted.push_back(toml_text(text));
@@ -112,7 +118,7 @@ class Lines {
   }
 
   void file(const std::string& table, const std::string& key, const NamedFile& file) {
-    if (!file.path.empty()) add(table, key, toml_text(file.path), "");
+    if (!file.path.empty()) add_text(table, key, file.path);
   }
 
   void fields(const std::string& table) {
@@ -180,16 +186,16 @@ class Lines {
 
   void ground() {
     file("ground", "file", spec_.ground);
-    if (!spec_.ground_field.empty()) add("ground", "field", toml_text(spec_.ground_field), "");
-    add("ground", "default", toml_text(spec_.default_ground.preset), "");
+    if (!spec_.ground_field.empty()) add_text("ground", "field", spec_.ground_field);
+    add_text("ground", "default", spec_.default_ground.preset);
     if (const std::string& code = spec_.default_ground.code; !code.empty())
       lines_.push_back({"ground.zones.default", "code", code, "", "scenario", "ground.default.code"});
     parameters(spec_.default_ground, "ground.zones.default", "ground.default.", !spec_.default_ground.own.empty());
     for (const ZoneSpec& zone : spec_.zones) {
       const std::string table = "ground.zones." + toml_key(zone.name), full = "ground.zones." + zone.name + ".";
       const std::string origin = spec_.origin(full + "preset");
-      lines_.push_back({table, "preset", toml_text(zone.preset), "",
-                        origin == "default" ? "preset of [ground] default" : origin, full + "preset"});
+      lines_.push_back({table, "preset", zone.preset, "", origin == "default" ? "preset of [ground] default" : origin,
+                        full + "preset", true});
       if (!zone.intervals.empty()) {
         std::vector<std::string> words;
         for (const Range& x : zone.intervals) words.push_back(list_text({x.low, x.high}));
@@ -209,10 +215,10 @@ class Lines {
       const std::string key(field.key);
       if (key == "shape_min" || key == "shape_max") continue;
       lines_.push_back({table, key, text_of(field.get(zone.ground)), field.unit == "1" ? "" : std::string(field.unit),
-                        source(key), full + key, written});
+                        source(key), full + key, false, written});
     }
     lines_.push_back({table, "shape", list_text({zone.ground.shape_min, zone.ground.shape_max}), "", source("shape"),
-                      full + "shape", written});
+                      full + "shape", false, written});
   }
 
   const ScenarioSpec& spec_;
@@ -232,23 +238,9 @@ std::string toml_of(const ScenarioSpec& spec) {
       text += "\n[" + line.table + "]\n";
       table = line.table;
     }
-    text += line.key + " = " + line.value;
+    text += line.key + " = " + (line.is_text ? toml_text(line.value) : line.value);
     if (!line.unit.empty()) text += "  # " + line.unit;
     text += "\n";
-  }
-  return text;
-}
-
-/// The text that `toml_text` has put in quotation marks.
-static std::string unquoted(const std::string& quoted) {
-  std::string text;
-  for (std::size_t i = 1; i + 1 < quoted.size(); ++i) {
-    if (quoted[i] == '\\' && quoted[++i] == 'u') {  // four digits
-      text += static_cast<char>(std::stoi(quoted.substr(i + 1, 4), nullptr, 16));
-      i += 4;
-    } else {
-      text += quoted[i];
-    }
   }
   return text;
 }
@@ -256,10 +248,7 @@ static std::string unquoted(const std::string& quoted) {
 std::vector<Setting> settings_of(const ScenarioSpec& spec) {
   std::vector<Setting> settings;
   const Lines lines(spec);
-  for (const Line& line : lines.lines()) {
-    const bool is_text = line.value.starts_with('"');
-    settings.push_back({line.full, is_text ? unquoted(line.value) : line.value, line.unit, line.source});
-  }
+  for (const Line& line : lines.lines()) settings.push_back({line.full, line.value, line.unit, line.source});
   return settings;
 }
 
