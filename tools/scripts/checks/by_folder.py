@@ -19,7 +19,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
-TARGETS = ("talus_core", "talus_io", "talus_run", "talus", "talus-mpi")
+TARGETS = ("talus_core", "talus_fit", "talus_io", "talus_run", "talus_cli", "talus", "talus-mpi")
 DEFINED = re.compile(r'^define .*?@("[^"]+"|[\w.$]+)\(')
 NAMED = re.compile(r"@([\w.]*_GLOBAL__N_[\w.]*)")  # in an unnamed namespace; lambdas, which have a $, are numbered anew
 LAMBDA = re.compile(r"\d+\$_\d+")
