@@ -14,7 +14,7 @@ class SlidingFriction {
 
   /// Sets the friction of the cell under the block, and whether the slide must stop at the border of this cell.
   void set(Slope& slope, const Motion& motion) {
-    if (of_patch_ != slope.at) read_cells(slope);
+    if (!of_patch_ || *of_patch_ != slope.at) read_cells(slope);
     slope.tan_phi = tan_phi_[0][0];
     slope.bounded_to.reset();
     if (!differ_) return;

@@ -270,7 +270,9 @@ TEST(Families, APropertyThatNoArrangementCanShowIsNotNamed) {
       c.blocks[b].group = "s" + std::to_string(rock % sites);
       energy.push_back(numbers.normal());
     }
-    return test_block_property(std::vector<BlockNumbers>{{c, energy}}, {.level = level});
+    FamilyOptions options;
+    options.level = level;
+    return test_block_property(std::vector<BlockNumbers>{{c, energy}}, options);
   };
   EXPECT_FALSE(of_sites(3, 0.05).may_name);
   EXPECT_EQ(of_sites(3, 0.05).note,
