@@ -99,6 +99,7 @@ class Hazard(OneThread, KeptRuns, Case):
         self.simulate("plain")
         self.assertEqual({k: v for k, v in with_them.items() if k != "hazard_tally.gz"}, self.hashes("plain"))
         self.refused("has no annual frequencies; give the sources a field frequency", "hazard", self.path("plain"))
+        self.refused("0.6: there is no such file; --frequency of this command takes a file", "hazard", self.path("out"), "--frequency", "0.6")
 
     def test_refusals(self):
         self.simulated()

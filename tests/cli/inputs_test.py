@@ -88,7 +88,7 @@ class Fields(InputCase):
         self.assertLess(max(self.releases()), 2.0)
         self.assertIn("field HEIGHT is not read", done.stderr)
         self.assertIn("--field release_height=HEIGHT", done.stderr)
-        self.assertIn("fields read: name (3 of 3 features)", done.stderr)
+        self.assertIn("fields read: name (3 of 3 features); others: HEIGHT, Durchmesser", done.stderr)
         self.assertTrue(any("HEIGHT is not read" in note for note in self.record()["notes"]))
         self.assertIn("HEIGHT is not read", self.run_well("check", *self.flags()).stdout)
 
@@ -571,6 +571,14 @@ class OffTheDem(InputCase):
         said = "\n".join(self.said([(box(140, 230, 20, 20), ["half"]), (box(140, 230, 10, 20), ["all"])]))
         self.assertIn("50 % of polygon 1 (half) lies where the DEM has no heights:", said)
         self.assertIn("features where the DEM has no heights, which release nothing: FID 2 (all)", said)
+
+    def test_degrees_and_exchanged_axes_are_seen(self):
+        """In a table without a system, which is taken in that of the DEM."""
+        for x, y, told in ((8.1, 46.7, "these look like degrees, taken for metres"), (NORTH - 60, WEST + 150, "x and y look exchanged"),
+                           (WEST - 9000, NORTH, "is the coordinate system of the layer the right one?")):
+            self.write_table("cells.csv", "x,y", [(x, y)])
+            self.fails(2, "cells.csv: lies wholly off the DEM", told, arguments=["check", "--dem", self.path("dem.tif"), "--sources",
+                                                                                  self.path("cells.csv"), "--diameter", "1"])
 
     def zones(self, *shapes):
         write_features(self.path("zones.gpkg"), "zones", [(wkt, ["forest-road-3d"]) for wkt in shapes], [("zone", ogr.OFTString)])

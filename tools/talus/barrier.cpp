@@ -98,8 +98,8 @@ CrossingTable simulated_crossings(const RunSummary& run, const BarrierOptions& o
   const fs::path file = fs::path(o.folder) / "screens.csv";
   if (run.screens.empty() || !fs::exists(file))
     throw talus::InputError(o.folder +
-                            ": the run kept no crossings (no screens.csv), must have had [screens] file in its "
-                            "scenario: add lines that blocks cross and run it again");
+                            ": the run kept no crossings (no screens.csv), must have had --screens, or [screens] file "
+                            "in its scenario: add lines that blocks cross and run it again");
   const auto gap = talus::io::gap_note(without_height(run, o));  // also says if there is no such screen
   const auto left = talus::io::left_note(run, 0);
   CrossingTable crossings = talus::io::read_crossings(file.string(), o.screen);

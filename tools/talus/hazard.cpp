@@ -44,8 +44,9 @@ fs::path tally_file(const fs::path& folder) {
   if (const auto file = talus::io::hazard_file_of(folder)) return *file;
   throw talus::InputError(
       folder.string() +
-      ": this run has no annual frequencies; give the sources a field frequency (events per year), or the scenario of "
-      "the run [frequency] total (of all sources together), per_area or power_law, and run again");
+      ": this run has no annual frequencies; give the sources a field frequency (events per year; of another name: "
+      "--field frequency=NAME), or the run --frequency (events per year of all sources together), or its scenario "
+      "[frequency] total, per_area or power_law, and run again");
 }
 
 /// What an object of some width needs: class limits that are thresholds of the run.
@@ -198,7 +199,10 @@ talus::io::HazardRecord asked_of(const HazardOptions& options) {
   record.curves = options.curves;
   for (const std::string& input : {talus::io::file_of_layer(options.objects), options.frequency})
     if (!input.empty() && !input.starts_with("/vsi") && input.find(':') == std::string::npos && !fs::exists(input))
-      throw talus::InputError(input + ": there is no such file");
+      throw talus::InputError(input + ": there is no such file" +
+                              (input == options.frequency ? "; --frequency of this command takes a file: "
+                                                            "docs/hazard.md, \"Another weighting\""
+                                                          : ""));
   if (!options.matrix.empty()) record.matrix = talus::io::read_matrix(options.matrix);
   return record;
 }

@@ -215,7 +215,7 @@ std::optional<std::string> check_metric(const std::string& path, const std::stri
   const PJ_TYPE type = proj_get_type(system.get());
   const std::string way_out = "; reproject it, for example with gdalwarp -t_srs " +
                               example_system(context.get(), system.get(), extent) + " -r cubicspline " +
-                              shell_word(path) + " projected.tif";
+                              shell_word(path) + " projected.tif, and -tr with the cell size of the survey";
   if (type == PJ_TYPE_GEOGRAPHIC_2D_CRS || type == PJ_TYPE_GEOGRAPHIC_3D_CRS)
     throw InputError(path + ": coordinates are in degrees (" + crs_name(wkt) +
                      "), must be metres of a projected coordinate system" + way_out);

@@ -110,9 +110,22 @@ std::string extents_text(const OGREnvelope& box, const std::string& from, const 
          " in " + crs_name(terrain.geo.crs_wkt);
 }
 
+/// What features that are off the map may be instead: in degrees, or with x and y exchanged.
+std::string mistaken_text(const OGREnvelope& box, const Grid& grid) {
+  const double west = box.MinX + grid.west, south = box.MinY + grid.south;
+  const double east = box.MaxX + grid.west, north = box.MaxY + grid.south;
+  if (west >= -180.0 && east <= 180.0 && south >= -180.0 && north <= 180.0)
+    return "these look like degrees, taken for metres: give the layer its coordinate system";
+  OGREnvelope exchanged;
+  exchanged.MinX = south - grid.west, exchanged.MaxX = north - grid.west;
+  exchanged.MinY = west - grid.south, exchanged.MaxY = east - grid.south;
+  return wholly_off(exchanged, grid) ? "is the coordinate system of the layer the right one?"
+                                     : "x and y look exchanged";
+}
+
 std::string off_dem_text(const std::string& path, const OGREnvelope& box, const Layer& layer, const Terrain& terrain) {
   return path + ": lies wholly off the DEM: its features reach over " +
-         extents_text(box, brought_from(layer), terrain) + ": is the coordinate system of the layer the right one?";
+         extents_text(box, brought_from(layer), terrain) + ": " + mistaken_text(box, terrain.heights.grid);
 }
 
 const char* kind_of(const Parts& parts) {

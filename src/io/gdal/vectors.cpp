@@ -1,6 +1,7 @@
 #include "talus/io/gdal/vectors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -109,7 +110,10 @@ class AttributeReader {
   std::string read_note() const {
     const std::vector<std::string> there = layer_.field_names();
     if (columns_.empty()) return path_ + ": no field is read" + (there.empty() ? "" : "; there are " + joined(there));
-    return fields_note(path_, columns_, features_);
+    std::vector<std::string> others;
+    for (const std::string& field : there)
+      if (!is_read(field) && !is_place(field)) others.push_back(field);
+    return fields_note(path_, columns_, features_) + (others.empty() ? "" : "; others: " + joined(others));
   }
 
   /// A line for each field that looks as if it were meant.
@@ -136,6 +140,10 @@ class AttributeReader {
   }
 
  private:
+  /// A column of a table that has the place of a feature.
+  static bool is_place(const std::string& field) {
+    return std::ranges::any_of(std::array{"x", "y", "wkt"}, [&](const char* p) { return EQUAL(field.c_str(), p); });
+  }
   static bool is_height(const std::string& field) { return EQUAL(field.c_str(), "height"); }
   bool is_read(const std::string& field) const {
     return std::ranges::find(columns_, field, &FieldUse::field) != columns_.end();

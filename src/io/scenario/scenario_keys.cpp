@@ -357,7 +357,8 @@ static void refuse_a_number(const std::string& scenario) {
   if (number_of_cell(scenario) && !std::filesystem::exists(scenario))
     throw InputError(scenario +
                      ": is taken for the file of a scenario, which is not there; numbers of a list are written with "
-                     "commas and without spaces: --thresholds 30,300");
+                     "commas and without spaces: --thresholds 30,300; a range of diameters is given by fields "
+                     "diameter_min and diameter_max, or as [blocks] diameter = [0.5, 2] in a scenario");
 }
 
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) {
