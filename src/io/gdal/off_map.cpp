@@ -110,7 +110,7 @@ std::string extents_text(const OGREnvelope& box, const std::string& from, const 
          " in " + crs_name(terrain.geo.crs_wkt);
 }
 
-/// What features that are off the map may be instead: in degrees, or with x and y exchanged.
+/// Likely cause of a layer off the map: degrees taken for metres, x and y exchanged, or another coordinate system.
 std::string mistaken_text(const OGREnvelope& box, const Grid& grid) {
   const double west = box.MinX + grid.west, south = box.MinY + grid.south;
   const double east = box.MaxX + grid.west, north = box.MaxY + grid.south;

@@ -32,9 +32,9 @@ class Projection {
   /// @param scores  by direction, summed over the blocks
   ///
   /// The estimate is the best one within its bounds, the statistic that of Rao, with the variance that the model gives.
-  /// (The variance of the blocks' own contributions, which a fit makes too small, gave too many false alarms.) Its
-  /// distribution is taken as chi-bar squared (chi_bar_tail): p-values that are reported come from data sets of the
-  /// model, which go through the same choice.
+  /// Its distribution is taken as chi-bar squared (chi_bar_tail): p-values that are reported come from data sets of the
+  /// model, which go through the same choice. (The scatter of the blocks themselves is no variance for it: a fit to
+  /// these blocks makes it less than that of drawn data sets.)
   Verdict verdict(const Eigen::VectorXd& scores) const;
 
   /// Standard error of the estimate of each tested parameter if it alone is not zero, in units of its step; under the
