@@ -24,6 +24,7 @@
 #include "talus/run/gullies.hpp"
 #include "talus/run/summary.hpp"
 #include "talus/simulate/plan/plan.hpp"
+#include "talus/simulate/scenario/retreat.hpp"
 #include "talus/simulate/screens/screens.hpp"
 #include "talus/simulate/tally/visits.hpp"
 #include "talus/simulate/tally_of.hpp"
@@ -131,7 +132,9 @@ std::string list_text(const std::vector<double>& values, const char* unit) {
   return words.empty() ? "none" : talus::joined(words) + " " + unit;
 }
 
-void print_terrain(const LoadedScenario& loaded) {
+/// @param maps_pits  the pits are written to a file
+void print_terrain(const LoadedScenario& loaded, bool maps_pits) {
+  const char* const way = maps_pits ? "" : "; --pits maps them";
   const talus::Raster<float>& heights = loaded.scenario.surface.heights();
   const talus::Grid& grid = heights.grid;
   const auto missing =
@@ -156,12 +159,11 @@ void print_terrain(const LoadedScenario& loaded) {
   const talus::PitSummary pits = talus::summary_of_pits(heights);
   if (pits.count > 0)
     line("pits", count_text(pits.count) + (pits.count == 1 ? " cell is" : " cells are") +
-                     " lower than all eight neighbours, by up to " + talus::with_digits(pits.deepest, 3) +
-                     " m; --pits maps them");
+                     " lower than all eight neighbours, by up to " + talus::with_digits(pits.deepest, 3) + " m" + way);
   const talus::DamCount dams = talus::count_dammed(heights);
   if (dams.dammed > 0)
     line("dammed", count_text(dams.dammed) + (dams.dammed == 1 ? " cell is" : " cells are") +
-                       " lower than the four neighbours, with a way down only diagonally; --pits maps them");
+                       " lower than the four neighbours, with a way down only diagonally" + way);
 }
 
 void print_zones(const Scenario& scenario) {
@@ -181,6 +183,17 @@ void print_zones(const Scenario& scenario) {
                                      talus::with_digits(talus::degrees(std::atan(g.tan_phi)), 4) + " deg, shape " +
                                      range_text({g.shape_min, g.shape_max}, ""));
   }
+}
+
+/// How often blocks fall, and what that means for the rock face.
+std::string frequency_text(const Scenario& scenario) {
+  const auto rock = talus::annual_rock(scenario);
+  if (!rock) return "not given: talus hazard will need it (field frequency of the sources, --frequency or [frequency])";
+  std::string text = talus::with_digits(rock->events, 4) + " events per year, " + talus::with_digits(rock->volume, 3) +
+                     " m3 of rock a year";
+  if (rock->area > 0.0)
+    text += ": the sources would go back by " + talus::with_digits(1e3 * rock->retreat(), 2) + " mm a year";
+  return text + "; kept by energy, for talus hazard";
 }
 
 void print_blocks(const Scenario& scenario) {
@@ -207,9 +220,7 @@ void print_blocks(const Scenario& scenario) {
                        count_text(scenario.released()) + " trajectories, seed " + std::to_string(scenario.seed));
   line("thresholds", "energy " + list_text(scenario.output.energy_thresholds, "kJ") + "; height " +
                          list_text(scenario.output.height_thresholds, "m"));
-  if (const auto weights = talus::AnnualWeights::of(scenario))
-    line("frequency",
-         talus::with_digits(weights->scale().total, 4) + " events per year; kept by energy, for talus hazard");
+  line("frequency", frequency_text(scenario));
   if (!scenario.screens.empty()) line("screens", count_text(scenario.screens.size()));
   if (!scenario.barriers.empty()) line("barriers", count_text(scenario.barriers.list().size()));
 }
@@ -252,7 +263,7 @@ void print_estimate(const LoadedScenario& loaded, unsigned threads) {
 }
 
 void print_plan(const LoadedScenario& loaded, unsigned threads) {
-  print_terrain(loaded);
+  print_terrain(loaded, !options.pits.empty());
   print_zones(loaded.scenario);
   for (const std::string& note : loaded.notes) line("read", note);
   if (const auto note = talus::io::coefficient_note(loaded.scenario.impact.deformation_coefficient))

@@ -34,7 +34,8 @@ std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& 
       const auto fields = ground_fields();
       const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.key == key; });
       if (field == fields.end() || std::find(known.begin(), known.end(), key) == known.end())
-        throw InputError("'" + key + "' is no parameter that can be fitted" + known_names(key, known));
+        throw InputError("'" + key + "' is no parameter that can be fitted" + known_names(key, known) +
+                         "; numbers of effects are called effects.NAME.NUMBER, as effects.vegetation-drag.coefficient");
       if (std::ranges::count(keys, key) > 1) throw InputError("'" + key + "' is to be fitted twice: name it once");
       if (!zones[zone]) continue;
       Parameter p;

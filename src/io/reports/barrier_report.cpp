@@ -95,7 +95,7 @@ Json stretch_of(const Stretch& s) {
 
 std::string width_text(const BarrierWidth& width, double containment) {
   return "\nwidth\n  for a containment of " + percent(containment) + "  " + stretch_text(width.shortest) +
-         "\n  by the map                   " + (width.above ? stretch_text(*width.above) : std::string("none")) +
+         "\n  by the map                   " + (width.above ? stretch_text(*width.above) : std::string("no bin")) +
          ": bins of " + with_digits(width.bin, 4) + " m that more than " + percent(1.0 - containment) +
          " of the released blocks cross\n";
 }

@@ -12,6 +12,7 @@
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/block_class.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
+#include "talus/simulate/scenario/retreat.hpp"
 #include "talus/terrain/source_slope.hpp"
 
 namespace talus {
@@ -206,13 +207,14 @@ std::vector<double> class_frequencies(const Scenario& s) {
 }
 
 std::vector<std::string> frequency_warnings(const Scenario& s) {
-  std::vector<std::string> warnings{rare_class_warning(s), overlap_warning(s)};
+  std::vector<std::string> warnings{rare_class_warning(s), overlap_warning(s), retreat_warning(s)};
   std::erase(warnings, "");
   return warnings;
 }
 
 bool is_of_frequencies(const std::string& warning) {
-  return warning.starts_with(kOverlapWarning) || warning.find(kRareClasses) != std::string::npos;
+  return warning.starts_with(kOverlapWarning) || warning.starts_with(kRetreatWarning) ||
+         warning.find(kRareClasses) != std::string::npos;
 }
 
 std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t rounds) {
@@ -267,6 +269,10 @@ std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t 
 
 std::int64_t AnnualWeights::weight(const Scenario& scenario, std::uint32_t source, std::uint32_t block) const {
   return weights_[source * classes_ + (classes_ > 1 ? class_of_block(scenario, source, block) : 0)];
+}
+
+double AnnualWeights::of_class(std::uint32_t source, std::size_t block_class) const {
+  return static_cast<double>(weights_[source * classes_ + std::min(block_class, classes_ - 1)]) * scale_.unit;
 }
 
 }  // namespace talus

@@ -11,6 +11,8 @@ long+=":*PropertyTest*:*TheFreePathAmong*:*DayTest*:*FurtherScreens*:AirDrag.Lan
 long+=":ImpactEnergy.N*:ImpactEnergy.WithA*:VisitBatch.VisitsNoOther*:*RoughFlight.Lands*2500_by*:*RoughFlight.Lands*50_by_50*:*RoughFlight.Lands*200_by_300*"
 long+=":BoundsOfReached.Cover*:LogHistogram.HoldsTheBound*:ScreenFinder.APathVertex*:ChiBar.OfTwo*:Regression.OfNormal*"
 long+=":PercentileBounds.Cover*:AnnualFrequency.BoundsOfStrataCover*:ForestStems.TheRateIsThatOfEachCell"
+long+=":Random.NeighboursAreIndependent:Random.TheBattery*:CrossingsPerYear.BoundsOfPieces*:Intervals.*Cover*:VisitBatch.FlightsOver*"
+long+=":RestInRoughness.KnowsNoDirection:RestInRoughness.MoreBlocks*:TreeList.TheIndexFinds*:TreeList.APlantedStrip*:Energy.NeverGrows*"
 export LSAN_OPTIONS="suppressions=$PWD/tests/leaks_of_libomp.txt:print_suppressions=0"
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT

@@ -33,8 +33,8 @@ struct WeightScale {
 /// Blocks drawn by a power law of volume are one class. Throws InputError if a power law does not hold for the blocks.
 std::vector<double> class_frequencies(const Scenario& scenario);
 
-/// The warnings that rest on the frequencies of a valid scenario: `rare_class_warning`, and how many cells several
-/// features release, unless each feature says how often its blocks fall. docs/hazard.md, "How often".
+/// The warnings that rest on the frequencies of a valid scenario: `rare_class_warning`, `retreat_warning`, and how many
+/// cells several features release, unless each feature says how often its blocks fall. docs/hazard.md, "How often".
 std::vector<std::string> frequency_warnings(const Scenario& scenario);
 
 /// Whether a warning of a run is one of these: with another weighting they are others.
@@ -57,6 +57,10 @@ class AnnualWeights {
 
   /// Weight of block `block` of a source cell [units].
   std::int64_t weight(const Scenario& scenario, std::uint32_t source, std::uint32_t block) const;
+
+  /// Events per year that a block of a class stands for, of a source cell.
+  /// @param block_class  index into Blocks::classes; any where the weights do not depend on the class
+  double of_class(std::uint32_t source, std::size_t block_class) const;
 
   const WeightScale& scale() const { return scale_; }
 

@@ -1,0 +1,82 @@
+#include "talus/simulate/scenario/retreat.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/scenarios.hpp"
+
+namespace talus {
+namespace {
+
+/// 10 source cells of 2 m on a plane of 60 degrees: 40 m2 in plan, 80 m2 of rock face.
+Scenario cliff() {
+  Scenario s = test::scenario_on(
+      test::terrain(test::grid_of(20, 20, 2.0, 2.0), [](double x, double) { return x * std::tan(radians(60.0)); }));
+  s.features.assign(1, SourceFeature{});
+  s.sources.clear();
+  for (int i = 0; i < 10; ++i) s.sources.push_back({0, 5.0 + 2.0 * i, 7.0, false});
+  s.trajectories = 10;
+  return s;
+}
+
+TEST(AnnualRock, IsEventsTimesTheVolumeOfASphere) {
+  Scenario s = cliff();
+  EXPECT_FALSE(annual_rock(s).has_value());
+  s.features[0].diameter = {2.0, 2.0};
+  s.features[0].frequency = 3.0;
+  const AnnualRock rock = annual_rock(s).value();
+  EXPECT_NEAR(rock.events, 3.0, 1e-9);
+  EXPECT_NEAR(rock.volume, 3.0 * 4.0 / 3.0 * kPi, 1e-9);
+  EXPECT_NEAR(rock.area, 80.0, 1e-3);
+  EXPECT_NEAR(rock.retreat(), kPi / 20.0, 1e-5);
+  s.sources[3].point = true;
+  EXPECT_TRUE(std::isnan(annual_rock(s)->retreat()));
+}
+
+/// Diameters of 1 to 3 m, uniform: the mean of d^3 is (3^4 - 1) / (4 (3 - 1)) = 10 m3.
+TEST(AnnualRock, TakesTheMeanOfTheVolumesNotOfTheDiameters) {
+  Scenario s = cliff();
+  s.blocks.classes = {{{1.0, 3.0}, 1.0}};
+  s.frequency.total = 6.0 / kPi;
+  EXPECT_NEAR(annual_rock(s)->volume, 10.0, 1e-9);
+}
+
+/// Two classes with events of their own, drawn in other shares, and two without, drawn 3 to 1.
+TEST(AnnualRock, OfClassesIsByTheirEventsOrElseByTheirShares) {
+  Scenario s = cliff();
+  s.blocks.classes = {{{1.0, 1.0}, 1.0, 0.9}, {{4.0, 4.0}, 5.0, 0.1}};
+  EXPECT_NEAR(annual_rock(s)->volume, kPi / 6.0 * (0.9 + 0.1 * 64.0), 1e-9);
+  s.blocks.classes = {{{1.0, 1.0}, 3.0}, {{4.0, 4.0}, 1.0}};
+  s.frequency.total = 1.0;
+  EXPECT_NEAR(annual_rock(s)->volume, kPi / 6.0 * (0.75 + 0.25 * 64.0), 1e-9);
+}
+
+/// Density of volumes with N(>= V) = V^-1 from 1 to e m3: V^-2 / (1 - 1/e); the mean is 1 / (1 - 1/e). With N = V^-2:
+/// 2 (1 - 1/e) / (1 - 1/e^2) = 2 / (1 + 1/e).
+TEST(AnnualRock, OfAPowerLawIsItsMean) {
+  Scenario s = cliff();
+  const double e = std::exp(1.0);
+  s.blocks.classes.clear();
+  s.blocks.power_law = {{1.0, e}, 1.0};
+  s.frequency.total = 1.0;
+  EXPECT_NEAR(annual_rock(s)->volume, 1.0 / (1.0 - 1.0 / e), 1e-9);
+  s.blocks.power_law.exponent = 2.0;
+  EXPECT_NEAR(annual_rock(s)->volume, 2.0 / (1.0 + 1.0 / e), 1e-9);
+}
+
+/// 0.001 events per m2 and year of 0.5 m3 from 40 m2 in plan bring 0.02 m3 from 80 m2 of face, 0.25 mm a year. Per
+/// hectare typed as per m2 it is 2.5 m a year.
+TEST(RetreatWarning, ComesWhereEventsPerHectareWereTypedAsPerSquareMetre) {
+  Scenario s = cliff();
+  const double diameter = std::cbrt(0.5 * 6.0 / kPi);
+  s.blocks.classes = {{{diameter, diameter}, 1.0}};
+  s.frequency.per_area = 0.001;
+  EXPECT_NEAR(annual_rock(s)->retreat(), 0.25e-3, 1e-7);
+  EXPECT_EQ(retreat_warning(s), "");
+  s.frequency.per_area = 10.0;
+  EXPECT_THAT(retreat_warning(s), testing::StartsWith("frequencies: 400 events per year bring 200 m3 of rock from "
+                                                      "sources of 80 m2, which would go back by 2.5 m a year"));
+}
+
+}  // namespace
+}  // namespace talus
