@@ -262,14 +262,14 @@ void print_estimate(const LoadedScenario& loaded, unsigned threads) {
                         talus::percent(talus::io::kAllowedLimitShare) + " do, the run ends with exit code 1");
 }
 
-void print_plan(const LoadedScenario& loaded, unsigned threads) {
+void print_plan(const CheckOptions& options, const LoadedScenario& loaded) {
   print_terrain(loaded, !options.pits.empty());
   print_zones(loaded.scenario);
   for (const std::string& note : loaded.notes) line("read", note);
   if (const auto note = talus::io::coefficient_note(loaded.scenario.impact.deformation_coefficient))
     line("note", *note);
   print_blocks(loaded.scenario);
-  print_estimate(loaded, threads);
+  print_estimate(loaded, options.threads);
   for (const std::string& warning : loaded.warnings) line("warning", warning);
   if (const auto warning = talus::run::many_trajectories_warning(loaded.scenario.released())) line("warning", *warning);
 }
@@ -291,7 +291,7 @@ int check(const CheckOptions& options) {
     const LoadedScenario loaded = talus::io::load_scenario(options.flags, &faults);
     if (faults.empty()) {
       write_pits(options, loaded);
-      if (!options.quiet) print_plan(loaded, options.threads);
+      if (!options.quiet) print_plan(options, loaded);
       return 0;
     }
   } catch (const talus::InputError& error) {
