@@ -204,6 +204,47 @@ class Files(Profile):
         self.assertGreater(ground.GetPointCount(), 50)  # it has a node at each row that it crosses
         self.assertAlmostEqual(ground.GetPoint(ground.GetPointCount() - 1)[0], WEST + 120, 3)
 
+    def test_flags_alone_give_the_bytes_of_the_file_that_says_the_same(self):
+        x, y = np.meshgrid(np.arange(60) * 5.0, np.arange(60)[::-1] * 5.0)
+        write_dem(self.path("dem.tif"), (1000.0 + 0.75 * np.maximum(0.0, y - 100.0)).astype(np.float32))
+        line = f"LINESTRING ({WEST + 150} {NORTH - 10}, {WEST + 150} {NORTH - 280})"
+        write_features(self.path("line.gpkg"), "line", [(line, [])])
+        self.write("p.toml", 'dem = "dem.tif"\nline = "line.gpkg"\nsurface = "bilinear"\ntrajectories = 40\n[sources]\n'
+                             'x = [10, 20]\nrelease_height = 2\n[blocks]\ndiameter = 1.5\n[ground]\ndefault = "soft-talus-2d"\n'
+                             '[model]\ndeformation_coefficient = 0.2\n[screens]\nx = [60, 120]\n')
+        self.profile()
+        flags = ["--dem", self.path("dem.tif"), "--line", self.path("line.gpkg"), "--surface", "bilinear", "--trajectories", "40",
+                 "--source-x", "10,20", "--release-height", "2", "--diameter", "1.5", "--preset", "soft-talus-2d",
+                 "--deformation-coefficient", "0.2", "--screen-x", "60,120"]
+        self.run_well("profile", *flags, "-o", self.path("flags"), "-q")
+        self.run_well("profile", self.path("flags/profile.toml"), "-o", self.path("again"), "-q")
+        for name in ("envelope.csv", "runout.csv", "stops.csv", "screens.csv", "profile.svg"):
+            for out in ("flags", "again"):
+                self.assertEqual(self.contents(out)[name], self.contents("out")[name], f"{out} {name}")
+        self.run_well("report", self.path("flags"))
+        # A flag counts more than the file.
+        self.profile("--screen-x", "100", "--source-x", "30", out="other")
+        self.assertEqual({row["screen"] for row in self.rows("screens.csv", "other")}, {"100"})
+        self.assertIn("x = 30 ", self.read_text("other/profile.toml").replace("\n", " "))
+
+    def test_faults_of_flags(self):
+        write_dem(self.path("dem.tif"), np.full((60, 60), 1000.0, np.float32))
+        write_features(self.path("line.gpkg"), "line", [(f"LINESTRING ({WEST + 150} {NORTH - 10}, {WEST + 150} {NORTH - 280})", [])])
+        terrain = ["--dem", self.path("dem.tif"), "--line", self.path("line.gpkg")]
+        for flags, words in (
+                ([], "no terrain, or more than one: give dem = \"FILE\" with line = \"FILE\" (--dem and --line)"),
+                (terrain, "no sources: give [sources] x = 60, or x = [50, 70] (--source-x 50,70), in m along the profile"),
+                ([*terrain, "--source-x", "10"], "no block diameter, must have one: give --diameter"),
+                ([*terrain, "--source-x", "10", "--diameter", "60"], "flag --diameter = 60: must be 0.01 to 50 m"),
+                ([*terrain, "--source-x", "300", "--diameter", "1"], "flag --source-x = 300: must be on the profile, 0 to 270 m"),
+                ([*terrain, "--source-x", "40,20", "--diameter", "1"], "must be one place, as 20, or from and to, as 20,40"),
+                ([*terrain, "--source-x", "20", "--diameter", "1", "--screen-x", "5,5"], "flag --screen-x = [5, 5]: has 5 twice"),
+                ([*terrain, "--source-x", "20", "--diameter", "1", "--screen-x", "500"], "flag --screen-x = 500: must be on the profile"),
+                ([*terrain, "--source-x", "20", "--diameter", "1", "--release-height", "-1"], "flag --release-height = -1: must be 0 to 500 m"),
+                ([*terrain[:2], "--line", "none.gpkg", "--source-x", "20", "--diameter", "1"], "flag --line = 'none.gpkg'")):
+            self.fails(2, words, arguments=("profile", *flags, "-o", self.path("out")))
+            self.assertFalse(os.path.exists(self.path("out")))
+
     def test_a_line_with_a_vertex_far_off_the_dem(self):  # each column of cells on the way there was listed: 4 GB
         write_dem(self.path("dem.tif"), np.full((60, 60), 1000.0, np.float32))
         write_features(self.path("line.gpkg"), "line", [(f"LINESTRING ({WEST + 50} {NORTH - 50}, 900000000 {NORTH - 50})", [])])

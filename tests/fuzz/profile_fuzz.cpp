@@ -11,8 +11,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::write(csv, "x,z\n0,100\n50,60\n100,60\n");
   fuzz::write(line ? csv : toml, bytes.rest());
   fuzz::refused_or_read([&] {
-    io::RunFlags flags;
-    flags.scenario = toml;
+    io::ProfileFlags flags;
+    flags.run.scenario = toml;
     io::load_profile(flags);
   });
   return 0;

@@ -303,7 +303,14 @@ class ByQgisProcess(Case):
         return folder + "/campaign.toml"
 
     def test_profile(self):
-        text = self.call("profile", f"PROFILE={HERE}/../../data/profile/profile.toml", "TRAJECTORIES=20", f"OUT={self.path('out')}")
+        """Along a line that is drawn in another system; no file is written by hand."""
+        line = self.path("line.geojson")  # in EPSG:4326
+        drawn = self.path("drawn.geojson")
+        with open(drawn, "w", encoding="utf-8") as file:
+            file.write('{"type": "LineString", "coordinates": [[2650100, 1170500], [2651000, 1170500]]}')
+        gdal.VectorTranslate(line, drawn, format="GeoJSON", srcSRS="EPSG:2056", dstSRS="EPSG:4326", reproject=True)
+        text = self.call("profile", f"DEM={DEM}", f"LINE={line}", "SOURCE_X=20,60", "DIAMETER=1.2", "SCREEN_X=300", "TRAJECTORIES=20",
+                         f"OUT={self.path('out')}")
         self.assertEqual(self.record()["released"], 20)
         self.assertIn(self.path("out/profile.svg"), text)
 

@@ -15,6 +15,7 @@
 #include "talus/io/results/write_profile.hpp"
 #include "talus/run/stopwatch.hpp"
 #include "talus/run/summary.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/simulate/simulate.hpp"
 #include "talus/simulate/tally_of.hpp"
 
@@ -29,7 +30,7 @@ constexpr std::uint32_t kDrawn = 60;  // paths in the drawing
 constexpr double kPathSpacing = 1.0;  // largest distance between written points of a flight [m]
 
 struct ProfileOptions {
-  talus::io::RunFlags flags;
+  talus::io::ProfileFlags flags;
   std::string out, progress;
   int threads = 0;
   bool overwrite = false, quiet = false;
@@ -158,23 +159,48 @@ int run_profile(const ProfileOptions& options) {
   return 1;
 }
 
+/// An option that takes places along the profile.
+void add_places(CLI::App& command, const char* name, std::vector<double>& places, const char* text) {
+  command.add_option(name, places, text)->delimiter(',')->allow_extra_args(false);
+}
+
 }  // namespace
 
 void add_profile(CLI::App& app, Action& action) {
   const auto options = std::make_shared<ProfileOptions>();
   CLI::App* command = app.add_subcommand("profile", "Simulate in two dimensions, on a profile");
-  with(command->add_option("profile", options->flags.scenario, "file of the profile (TOML): docs/profile.md")
-           ->required(),
+  talus::io::ProfileFlags& flags = options->flags;
+  with(command->add_option("profile", flags.run.scenario, "file of the profile (TOML): docs/profile.md"),
        file_of({"toml"}));
+  with(command->add_option("--dem", flags.run.dem, "terrain: a raster in a projected system in metres"),
+       file_of({"raster"}));
+  with(command->add_option("--line", flags.line, "one line over the terrain, drawn from the top down"),
+       file_of({"vector"}));
+  add_places(*command, "--source-x", flags.source,
+             "where blocks start, in m along the line: one place, or from and to with a comma and no spaces: 20,40");
+  with(command->add_option("--diameter", flags.run.diameter, "of the blocks [m]"),
+       number_of(talus::bounds_of("blocks.diameter")));
+  with(command->add_option("--release-height", flags.release_height, "above the terrain [m] (1)"),
+       number_of(talus::bounds_of("sources.release_height"), "1"));
+  with(command->add_option("--preset", flags.run.preset, "parameter set of the ground; talus presets lists them"),
+       preset_choice());
+  add_places(*command, "--screen-x", flags.screens,
+             "where crossings are recorded, in m along the line, with commas and no spaces: 110,199");
+  add_surface(*command, flags.run.surface);
+  with(command->add_option("--deformation-coefficient", flags.run.deformation_coefficient,
+                           "c of the impact law (0.25): a lower one gives higher energies and jumps"),
+       scalar_of("model.deformation_coefficient"));
   with(command->add_option("-o,--out", options->out, "new folder for the results")->required(), new_folder());
   command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
-  with(command->add_option("--trajectories", options->flags.trajectories, "how many blocks"),
-       scalar_of("trajectories"));
-  with(command->add_option("--seed", options->flags.seed, "of the random numbers")->check(seed_number()),
-       scalar_of("seed"));
+  with(command->add_option("--trajectories", flags.run.trajectories, "how many blocks"), scalar_of("trajectories"));
+  with(command->add_option("--seed", flags.run.seed, "of the random numbers")->check(seed_number()), scalar_of("seed"));
   add_threads(*command, options->threads);
   add_quiet(*command, options->quiet);
   add_progress(*command, options->progress);
-  command->footer("Example:\n  talus profile profile.toml -o result");
+  command->footer(
+      "Examples:\n"
+      "  talus profile profile.toml -o result\n"
+      "  talus profile --dem dem.tif --line line.gpkg --source-x 20 --diameter 1.2 -o result\n\n"
+      "An option given here overrides the file. OUT/profile.toml holds all settings.");
   command->callback([&action, options] { action = [options] { return run_profile(*options); }; });
 }

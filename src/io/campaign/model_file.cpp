@@ -140,7 +140,7 @@ InputFile model_input(const std::string& path) {
 Model read_model(const std::string& path, const Campaign& campaign, std::vector<std::string>* warnings) {
   ScenarioSpec spec;
   std::vector<std::string> faults;
-  start_with_preset(spec, {}, faults);
+  start_with_preset(spec, {}, kDefaultPreset, faults);
   read_model_keys(spec, path, path, path, faults);
   for (const ZoneSpec& zone : spec.zones)
     if (std::find(campaign.zone_names.begin(), campaign.zone_names.end(), zone.name) == campaign.zone_names.end())

@@ -9,6 +9,7 @@
 #include "effect_places.hpp"
 #include "fitted_on.hpp"
 #include "io/files/checksum.hpp"
+#include "scenario_flags.hpp"
 #include "scenario_keys.hpp"
 #include "scenario_text.hpp"
 #include "size_warning.hpp"
@@ -147,14 +148,6 @@ void warn_unused_diameter(const ScenarioSpec& spec, const SourceLayer& layer, st
                      " to " + text_of(all.high) + " m (--field diameter= to leave the field out)");
 }
 
-/// A preset of the command line under numbers of the scenario that hide it: easily overlooked.
-void warn_unused_preset(const ScenarioSpec& spec, std::vector<std::string>& warnings) {
-  if (spec.origin("ground.default") != kPresetFlag || !spec.default_ground.gives_all()) return;
-  warnings.push_back("flag --preset = '" + spec.default_ground.preset + "' changes nothing: " + spec.scenario.where +
-                     " gives every number of the default ground, which counts more: take out its "
-                     "[ground.zones.default], or leave the flag out");
-}
-
 /// Whether the ground around a cell is steeper than half of its friction angle. On flatter ground blocks come to rest
 /// also without a dam, and the noise of a survey alone makes dams: docs/physics.md, "Creases".
 bool steep_enough_for_dams(const Raster<float>& heights, const Cover& cover, int column, int row) {
@@ -262,7 +255,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   parts.surface = Surface(std::move(terrain.heights), spec.surface);
   warn_of_dams(parts.surface, parts.cover, out.warnings);
   out.scenario = make_scenario(std::move(parts));
-  warn_unused_preset(spec, out.warnings);
+  warn_of_unused_preset(spec, out.warnings);
   warn_of_sizes(spec, out.scenario, out.warnings);
   tell_of_effects(out);
 

@@ -8,6 +8,7 @@
 #include "io/gdal/csv_table.hpp"
 #include "profile_keys.hpp"
 #include "profile_line.hpp"
+#include "scenario_flags.hpp"
 #include "scenario_text.hpp"
 #include "size_warning.hpp"
 #include "talus/base/error.hpp"
@@ -19,6 +20,13 @@ namespace {
 
 constexpr double kMostColumns = 2e6;
 constexpr Bounds kX{"x", "m", "along the profile", -1e7, 1e7}, kZ{"z", "m", "height", -500.0, 9000.0};
+
+/// A key for messages: the flag that gave it, or the file and the key.
+std::string named(const ScenarioSpec& spec, const std::string& key) {
+  const std::string origin = spec.origin(key);
+  if (origin.starts_with("flag")) return origin;
+  return (spec.scenario.where.empty() ? "" : spec.scenario.where + ": ") + key;
+}
 
 /// Throws InputError if a place of the input is not on the profile.
 void check_inside(const Profile& profile, double x, const std::string& key) {
@@ -42,9 +50,10 @@ void check_before_end(const ProfileSpec& p, const Grid& grid, const std::string&
 void place_sources(const ScenarioSpec& spec, const Profile& profile, const Grid& grid, Scenario& parts) {
   const ProfileSpec& p = *spec.profile;
   const double west = grid.west;
-  check_inside(profile, p.source.low, spec.scenario.where + ": sources.x");
-  check_inside(profile, p.source.high, spec.scenario.where + ": sources.x");
-  check_before_end(p, grid, spec.scenario.where + ": sources.x");
+  const std::string key = named(spec, "sources.x");
+  check_inside(profile, p.source.low, key);
+  check_inside(profile, p.source.high, key);
+  check_before_end(p, grid, key);
   SourceFeature feature;
   feature.release_height = spec.release_height;
   feature.velocity = {p.vx, 0.0, p.vz};
@@ -54,7 +63,7 @@ void place_sources(const ScenarioSpec& spec, const Profile& profile, const Grid&
 
 void place_screens(const ScenarioSpec& spec, const Profile& profile, double west, Scenario& parts) {
   for (const double x : spec.profile->screens) {
-    check_inside(profile, x, spec.scenario.where + ": screens.x");
+    check_inside(profile, x, named(spec, "screens.x"));
     parts.screens.push_back({text_of(x), {{{x - west, 0.5}, {x - west, 1.5}}}});
   }
 }
@@ -141,9 +150,8 @@ void read_terrain_of(const ScenarioSpec& spec, LoadedProfile& out) {
   }
   const double columns = (out.profile.to() - out.profile.from()) / p.step;
   if (columns > kMostColumns)
-    throw InputError(spec.scenario.where + ": step = " + text_of(p.step) + ": would be " +
-                     text_of(std::round(columns)) + " columns, must be at most " + text_of(kMostColumns) +
-                     ": give a larger step");
+    throw InputError(named(spec, "step") + " = " + text_of(p.step) + ": would be " + text_of(std::round(columns)) +
+                     " columns, must be at most " + text_of(kMostColumns) + ": give a larger step");
 }
 
 void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
@@ -184,7 +192,7 @@ Profile read_profile_csv(const std::string& path, double step) {
   return profile;
 }
 
-LoadedProfile load_profile(const RunFlags& flags) {
+LoadedProfile load_profile(const ProfileFlags& flags) {
   std::vector<std::string> faults;
   const ScenarioSpec spec = read_profile_spec(flags, faults);
   const std::vector<const NamedFile*> files{&spec.dem, &spec.profile->csv, &spec.profile->line};
@@ -211,14 +219,17 @@ LoadedProfile load_profile(const RunFlags& flags) {
   parts.impact.in_plane = true;
   place_sources(spec, out.profile, grid, parts);
   if (parts.blocks.classes.empty() && parts.blocks.power_law.volume.high == 0.0)
-    throw InputError(spec.scenario.where + ": no block diameter, must have one: give [blocks] diameter, in m");
+    throw InputError((spec.scenario.where.empty() ? "" : spec.scenario.where + ": ") +
+                     "no block diameter, must have one: give --diameter, or [blocks] diameter in the file, in m");
   place_screens(spec, out.profile, grid.west, parts);
   place_zones(spec, out.profile, grid, parts);
   warn_of_idle_zones(spec, parts.cover, loaded.warnings);
   load_effect_places(spec, Terrain{}, parts, loaded);  // zones only: a profile has no files of polygons
   parts.surface = Surface(std::move(extruded.heights), SurfaceKind::Bilinear);
   loaded.scenario = make_scenario(std::move(parts));
+  loaded.warnings.insert(loaded.warnings.end(), spec.warnings.begin(), spec.warnings.end());
   warn_of_presets(spec, loaded.warnings);
+  warn_of_unused_preset(spec, loaded.warnings);
   warn_of_sizes(spec, loaded.scenario, loaded.warnings);
   tell_of_effects(loaded);
   loaded.complete_toml = toml_of(spec);

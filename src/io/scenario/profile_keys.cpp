@@ -22,6 +22,13 @@ namespace {
 constexpr Bounds kBin{"bin", "m", "width of the bins of the results", 0.05, 1000.0},
     kPlaceAlong{"x", "m", "place along the profile", -1e7, 1e7};
 
+/// A number that a list holds twice.
+std::optional<double> repeated(std::vector<double> numbers) {
+  std::ranges::sort(numbers);
+  const auto twice = std::ranges::adjacent_find(numbers);
+  return twice == numbers.end() ? std::nullopt : std::optional(*twice);
+}
+
 /// Reads the keys that only a profile has.
 class ProfileReader {
  public:
@@ -50,22 +57,8 @@ class ProfileReader {
     check_effects();
   }
 
-  /// Adds a fault for what is not given and must be. These faults have no line and come last.
-  void check_given(const std::string& file) {
-    const bool csv = is_given("profile"), dem = is_given("dem"), line = is_given("line");
-    if (csv ? dem || line : !dem || !line)
-      faults_.push_back(file +
-                        ": no terrain, or more than one: give profile = \"FILE.csv\" (columns x, z), or "
-                        "dem = \"FILE\" with line = \"FILE\"");
-    if (csv && is_given("surface"))
-      faults_.push_back(file + ": surface: is of a DEM, must be left out for a profile = \"FILE.csv\"");
-    if (!is_given("sources.x"))
-      faults_.push_back(file + ": no sources: give [sources] x = 60, or x = [50, 70], in m along the profile");
-  }
-
  private:
   void given(const std::string& key) { spec_.origins[key] = "scenario"; }
-  bool is_given(const std::string& key) const { return spec_.origins.contains(key); }
 
   /// A key that is there is given, also where its value is a fault: nobody shall then read that it is missing.
   void given_if_there(TableReader& table, const std::string& key) {
@@ -101,8 +94,7 @@ class ProfileReader {
     if (!x) return;
     profile_.screens = *x;
     given("screens.x");
-    std::ranges::sort(*x);
-    if (const auto twice = std::ranges::adjacent_find(*x); twice != x->end())
+    if (const auto twice = repeated(*x))
       table.fault("x", *table.find("x"), "has " + text_of(*twice) + " twice, must name each place once");
   }
 
@@ -146,25 +138,80 @@ void flatten(ZoneSpec& zone, const std::string& table, std::vector<std::string>&
   zone.ground.psi_scale = 0.0;
 }
 
+/// Adds a fault for a number of a flag that is out of bounds.
+void check_flag(const std::string& flag, double value, const Bounds& bounds, std::vector<std::string>& faults) {
+  if (const auto rule = fault_of(bounds, value)) faults.push_back(flag + " = " + text_of(value) + ": " + *rule);
+}
+
+/// The flags that only a profile has, in place of its file's settings.
+void lay_profile_flags(ScenarioSpec& spec, const ProfileFlags& flags, std::vector<std::string>& faults) {
+  ProfileSpec& profile = *spec.profile;
+  if (flags.line) {
+    const std::string flag = "flag --line";
+    profile.line = {absolute_path(*flags.line, std::filesystem::current_path()), flag + " = '" + *flags.line + "'"};
+    spec.origins["line"] = flag;
+  }
+  if (!flags.source.empty()) {
+    const std::string flag = spec.origins["sources.x"] = "flag --source-x";
+    for (const double x : flags.source) check_flag(flag, x, kPlaceAlong, faults);
+    if (flags.source.size() > 2 || flags.source.front() > flags.source.back())
+      faults.push_back(flag + " = " + list_text(flags.source) + ": must be one place, as 20, or from and to, as 20,40");
+    profile.source = {flags.source.front(), flags.source.back()};
+  }
+  if (flags.release_height) {
+    const std::string flag = spec.origins["sources.release_height"] = "flag --release-height";
+    check_flag(flag, *flags.release_height, bounds_of("sources.release_height"), faults);
+    spec.release_height = {*flags.release_height, *flags.release_height};
+  }
+  if (!flags.screens.empty()) {
+    const std::string flag = spec.origins["screens.x"] = "flag --screen-x";
+    for (const double x : flags.screens) check_flag(flag, x, kPlaceAlong, faults);
+    if (const auto twice = repeated(flags.screens))
+      faults.push_back(flag + " = " + list_text(flags.screens) + ": has " + text_of(*twice) +
+                       " twice, must name each place once");
+    profile.screens = flags.screens;
+  }
+}
+
+/// Adds a fault for what is not given and must be.
+void check_given(const ScenarioSpec& spec, std::vector<std::string>& faults) {
+  const auto given = [&](const std::string& key) { return spec.origins.contains(key); };
+  const std::string in = spec.scenario.where.empty() ? "" : spec.scenario.where + ": ";
+  const bool csv = given("profile"), dem = given("dem"), line = given("line");
+  if (csv ? dem || line : !dem || !line)
+    faults.push_back(in +
+                     "no terrain, or more than one: give dem = \"FILE\" with line = \"FILE\" (--dem and --line), or "
+                     "profile = \"FILE.csv\" (columns x, z)");
+  if (csv && given("surface"))
+    faults.push_back(in + "surface: is of a DEM, must be left out for a profile = \"FILE.csv\"");
+  if (!given("sources.x"))
+    faults.push_back(in +
+                     "no sources: give [sources] x = 60, or x = [50, 70] (--source-x 50,70), in m along the profile");
+}
+
+void read_profile_keys(ScenarioSpec& spec, const std::string& file, std::vector<std::string>& faults) {
+  spec.scenario = {std::filesystem::absolute(file).lexically_normal().string(), file};
+  allow_folder_of(file);
+  const TomlValue root = read_toml(file, file);
+  refuse_other_kind(root, file, FileKind::Profile);
+  ProfileReader(spec, file, faults).read(TableReader(&root, "", file, faults));
+}
+
 }  // namespace
 
-ScenarioSpec read_profile_spec(const RunFlags& flags, std::vector<std::string>& faults) {
+ScenarioSpec read_profile_spec(const ProfileFlags& flags, std::vector<std::string>& faults) {
+  const std::string& file = flags.run.scenario;
   ScenarioSpec spec;
   spec.profile.emplace();
-  spec.default_ground = {
-      "default", std::string(kDefaultProfilePreset), find_preset(kDefaultProfilePreset).ground, {}, {}, {}};
-  spec.scenario = {std::filesystem::absolute(flags.scenario).lexically_normal().string(), flags.scenario};
-  allow_folder_of(flags.scenario);
-  const TomlValue root = read_toml(flags.scenario, flags.scenario);
-  refuse_other_kind(root, flags.scenario, FileKind::Profile);
-  ProfileReader reader(spec, flags.scenario, faults);
-  reader.read(TableReader(&root, "", flags.scenario, faults));
-  flatten(spec.default_ground, flags.scenario + ": ground.zones.default", faults);
-  for (ZoneSpec& zone : spec.zones) flatten(zone, flags.scenario + ": ground.zones." + zone.name, faults);
-  lay_flags(spec, flags, faults);
+  start_with_preset(spec, flags.run, kDefaultProfilePreset, faults);
+  if (!file.empty()) read_profile_keys(spec, file, faults);
+  flatten(spec.default_ground, file + ": ground.zones.default", faults);
+  for (ZoneSpec& zone : spec.zones) flatten(zone, file + ": ground.zones." + zone.name, faults);
+  lay_flags(spec, flags.run, faults);
+  lay_profile_flags(spec, flags, faults);
   check_effect_zones(spec, faults);
-  sort_by_line(faults, flags.scenario);
-  reader.check_given(flags.scenario);
+  sort_by_line(faults, file);
+  check_given(spec, faults);  // these faults have no line and come last
   return spec;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "scenario_spec.hpp"
+#include "talus/io/scenario/profile_file.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus::io {
@@ -17,7 +18,7 @@ inline bool is_a_step(double distance, double step) {
   return distance >= (1.0 - kRounding) * step;
 }
 
-/// Reads the file of a profile as `read_spec` reads a scenario; `profile` of the result is set.
-ScenarioSpec read_profile_spec(const RunFlags& flags, std::vector<std::string>& faults);
+/// Reads the flags and the file of a profile as `read_spec` reads a scenario; `profile` of the result is set.
+ScenarioSpec read_profile_spec(const ProfileFlags& flags, std::vector<std::string>& faults);
 
 }  // namespace talus::io

@@ -106,8 +106,9 @@ void lay_diameter(ScenarioSpec& spec, double diameter, bool has_frequency, std::
 
 }  // namespace
 
-void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults) {
-  spec.default_ground = {"default", std::string(kDefaultPreset), find_preset(kDefaultPreset).ground, {}, {}};
+void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::string_view standard,
+                       std::vector<std::string>& faults) {
+  spec.default_ground = {"default", std::string(standard), find_preset(standard).ground, {}, {}, {}};
   if (!flags.preset) return;
   try {
     spec.default_ground.ground = find_preset(*flags.preset).ground;
@@ -116,6 +117,13 @@ void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<st
   } catch (const InputError& error) {
     faults.push_back("flag --preset = '" + *flags.preset + "': " + error.what());
   }
+}
+
+void warn_of_unused_preset(const ScenarioSpec& spec, std::vector<std::string>& warnings) {
+  if (spec.origin("ground.default") != kPresetFlag || !spec.default_ground.gives_all()) return;
+  warnings.push_back("flag --preset = '" + spec.default_ground.preset + "' changes nothing: " + spec.scenario.where +
+                     " gives every number of the default ground, which counts more: take out its "
+                     "[ground.zones.default], or leave the flag out");
 }
 
 void start_with_model(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults) {

@@ -363,7 +363,7 @@ static void refuse_a_number(const std::string& scenario) {
 
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) {
   ScenarioSpec spec;
-  start_with_preset(spec, flags, faults);
+  start_with_preset(spec, flags, kDefaultPreset, faults);
   start_with_model(spec, flags, faults);
   if (!flags.scenario.empty()) {
     refuse_a_number(flags.scenario);

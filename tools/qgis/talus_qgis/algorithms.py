@@ -68,7 +68,10 @@ ALGORITHMS = [
      "advanced": {"observed", "frequency", "percentile", "containment", "stretch", "unweighted"}, "phases": [],
      "folder": "folder", "screen": "screen"},
     {"id": "profile", "command": "profile", "help": "profile", "phases": ["simulate", "write"],
-     "labels": {"trajectories": "number-of-blocks"},
+     "order": ["dem", "line", "source-x", "diameter", "release-height", "preset", "screen-x", "trajectories"],
+     "bands": {"dem"}, "shapes": {"line": [QgsProcessing.TypeVectorLine]}, "labels": {"trajectories": "number-of-blocks"},
+     "advanced": {"profile", "deformation-coefficient"}, "needs": [("profile",), ("dem", "line", "source-x")],
+     "needs text": "Give the terrain, a line over it and where blocks start, or the file of a profile.",
      "files": {"record": "run.json", "picture": "profile.svg"}, "folder": "out", "nothing to load": True},
     {"id": "calibrate", "command": "calibrate", "help": "closing-the-loop", "phases": ["fit"], "folder": "out",
      "nothing to load": True,
@@ -318,7 +321,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             return False, fault
         needs = self.table.get("needs")
         if needs and not any(all(parameters.get(key_of(name)) not in (None, "") for name in names) for names in needs):
-            return False, tr("Give the terrain and the sources, or a scenario file.")
+            return False, tr(self.table.get("needs text", "Give the terrain and the sources, or a scenario file."))
         if parameters.get("RESUME") and self.parameterAsBool(parameters, "RESUME", context) and _is_temporary(
                 parameters.get("OUT")):
             return False, tr("\"Resume\" needs the folder of the run that was cancelled: name it under \"Results\". A "

@@ -62,6 +62,10 @@ LABELS = {
     "stretch": ("Longest stretch with a design of its own", "Längster Abschnitt mit eigener Bemessung"),
     "unweighted": ("Count every block alike", "Jeden Block gleich zählen"),
     "profile": ("Profile (TOML)", "Profil (TOML)"),
+    "release-height": ("Height of release above the ground", "Starthöhe über dem Boden"),
+    "line": ("Line of the profile, from the top down", "Linie des Profils, von oben nach unten"),
+    "source-x": ("Where blocks start [m along the line]", "Wo Blöcke starten [m entlang der Linie]"),
+    "screen-x": ("Where crossings are recorded [m along the line]", "Wo Durchgänge aufgezeichnet werden [m entlang der Linie]"),
     "fit": ("Parameters of the ground that are fitted", "Bodenparameter, die angepasst werden"),
     "trials": ("Trajectories per block in the searches", "Sturzbahnen pro Block beim Suchen"),
     "starts": ("Searches from different starts", "Suchen von verschiedenen Startwerten aus"),
@@ -122,7 +126,9 @@ KEYS = {
                       "oft sie überschritten werden."),
     "about sources": ("Candidate source cells by the steepness of the terrain: look at them before a run.",
                       "Mögliche Ausbruchzellen nach der Neigung des Geländes: vor einem Lauf ansehen."),
-    "about profile": ("Simulates in two dimensions on a profile.", "Simuliert in zwei Dimensionen auf einem Profil."),
+    "about profile": ("Simulates in two dimensions on a profile: along a line over the terrain, or as a file says.",
+                      "Simuliert in zwei Dimensionen auf einem Profil: entlang einer Linie über das Gelände, oder nach einer "
+                      "Datei."),
     "about calibrate": ("Fits the parameters of the ground to measured rock falls.",
                         "Passt die Parameter des Bodens an gemessene Stürze an."),
     "about diagnose": ("Finds what a fitted model leaves of measured data, and which effect explains it.",
@@ -189,6 +195,8 @@ GERMAN = {
     "{name}: band {band} is written to {path}": "{name}: Band {band} ist nach {path} geschrieben",
     "{name}: give the polygons or the raster, not both": "{name}: die Flächen oder das Raster angeben, nicht beides",
     "Give the terrain and the sources, or a scenario file.": "Gelände und Ausbruchgebiete angeben, oder eine Szenario-Datei.",
+    "Give the terrain, a line over it and where blocks start, or the file of a profile.":
+        "Das Gelände, eine Linie darüber und wo Blöcke starten angeben, oder die Datei eines Profils.",
     "{name}: '{value}' is no number: write {number}": "{name}: «{value}» ist keine Zahl: {number} schreiben",
     "The events per year are those that were given; a field frequency of the sources is not read.":
         "Es gilt die angegebene Zahl der Ereignisse pro Jahr; ein Feld frequency der Ausbruchgebiete wird nicht gelesen.",
@@ -375,6 +383,12 @@ GERMAN = {
         "des Laufs, dessen Zeit geschätzt wird; alle Prozessoren, wenn nicht angegeben",
     "file of the profile (TOML): docs/profile.md": "Datei des Profils (TOML): docs/profile.md",
     "how many blocks": "wie viele Blöcke",
+    "one line over the terrain, drawn from the top down": "eine Linie über das Gelände, von oben nach unten gezeichnet",
+    "where blocks start, in m along the line: one place, or from and to with a comma and no spaces: 20,40":
+        "wo Blöcke starten, in m entlang der Linie: eine Stelle, oder von und bis mit Komma ohne Leerzeichen: 20,40",
+    "above the terrain [m] (1)": "über dem Gelände [m] (1)",
+    "where crossings are recorded, in m along the line, with commas and no spaces: 110,199":
+        "wo Durchgänge aufgezeichnet werden, in m entlang der Linie, mit Kommas ohne Leerzeichen: 110,199",
     "CSV of observed crossings (as screens.csv or a campaign's passages.csv); the probabilities are of them, else of the "
     "simulated ones":
         "CSV beobachteter Durchgänge (wie screens.csv oder passages.csv einer Messkampagne); die Wahrscheinlichkeiten gelten "

@@ -20,10 +20,18 @@ struct LoadedProfile {
   Eigen::Vector2d place(double x, double z) const;
 };
 
-/// Reads and checks the file of a profile, docs/profile.md. Throws InputError, one line.
-///
-/// @param flags  scenario (the path), seed and trajectories are used
-LoadedProfile load_profile(const RunFlags& flags);
+/// The flags of `talus profile`.
+struct ProfileFlags {
+  RunFlags run;  ///< of these: scenario (the file of the profile; empty: from flags alone), dem, surface, preset,
+                 ///< diameter, deformation_coefficient, trajectories, seed
+  std::optional<std::string> line;       ///< over the DEM
+  std::vector<double> source;            ///< x of the releases, one or from and to [m]; empty: not given
+  std::optional<double> release_height;  ///< [m]
+  std::vector<double> screens;           ///< x [m]; empty: not given
+};
+
+/// Reads and checks a profile and its settings, docs/profile.md. Throws InputError, one line.
+LoadedProfile load_profile(const ProfileFlags& flags);
 
 /// Reads a polyline: a CSV with the columns x and z, x ascending by at least `step`.
 /// Throws InputError with file, line, value and what is allowed.
