@@ -141,13 +141,15 @@ class ByHand(Profile):
         self.assertEqual(self.contents("out")["runout.csv"], self.contents("mirror")["runout.csv"])
 
 
-class Files(Profile):
+class OnASlope(Profile):
     def setUp(self):
         super().setUp()
         self.nodes((0, 200), (150, 87.5), (155, 87.5), (300, 15), (400, 15))
         self.scenario("x = [18, 22]", "[screens]\nx = [100, 200]\n[ground.zones.road]\nx = [150, 155]\n"
                       "preset = 'forest-road-2d'\n[output]\ntrajectories = 20\n")
 
+
+class Files(OnASlope):
     def test_equal_bytes_for_any_threads_and_again_from_its_own_file(self):
         self.profile("--trajectories", "1000", "--threads", "1")
         first = self.contents("out")
@@ -210,11 +212,11 @@ class Files(Profile):
         line = f"LINESTRING ({WEST + 150} {NORTH - 10}, {WEST + 150} {NORTH - 280})"
         write_features(self.path("line.gpkg"), "line", [(line, [])])
         self.write("p.toml", 'dem = "dem.tif"\nline = "line.gpkg"\nsurface = "bilinear"\ntrajectories = 40\n[sources]\n'
-                             'x = [10, 20]\nrelease_height = 2\n[blocks]\ndiameter = 1.5\n[ground]\ndefault = "soft-talus-2d"\n'
+                             'x = [10, 20]\nrelease_height = 2\n[blocks]\ndiameter = 1.5\n[ground]\ndefault = "quarry-floor-2d"\n'
                              '[model]\ndeformation_coefficient = 0.2\n[screens]\nx = [60, 120]\n')
         self.profile()
         flags = ["--dem", self.path("dem.tif"), "--line", self.path("line.gpkg"), "--surface", "bilinear", "--trajectories", "40",
-                 "--source-x", "10,20", "--release-height", "2", "--diameter", "1.5", "--preset", "soft-talus-2d",
+                 "--source-x", "10,20", "--release-height", "2", "--diameter", "1.5", "--preset", "quarry-floor-2d",
                  "--deformation-coefficient", "0.2", "--screen-x", "60,120"]
         self.run_well("profile", *flags, "-o", self.path("flags"), "-q")
         self.run_well("profile", self.path("flags/profile.toml"), "-o", self.path("again"), "-q")
@@ -494,7 +496,7 @@ class Products(Profile):
             self.assertIn("look at the profile there", {point: why for _, point, _, why in rows}["Blocks that are trapped"])
 
 
-class Faults(Files):
+class Faults(OnASlope):
     def fails_with(self, *words):
         before = os.listdir(self.folder)
         self.fails(2, *words, arguments=["profile", self.path("p.toml"), "-o", self.path("new")])

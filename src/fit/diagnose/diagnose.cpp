@@ -88,9 +88,13 @@ class DiagnosisLoop {
     return how;
   }
 
+  /// Tests at the ground that `settled_` then is.
   ScoreTest tested(const FittedModel& base, std::span<const Candidate> candidates) {
     const Timesheet::Phase phase(fits_.times(), "tests");
-    return score_test(campaign_, {base.model, base.free, base.z, base.runs}, candidates, rows_, test_options());
+    const ScoreTestOptions how = test_options();
+    settled_ = settled_ground(campaign_, {base.model, base.free, base.z, base.runs}, rows_, how,
+                              [this](const Model& model) { return fits_.observed_in(campaign_, model); });
+    return score_test(campaign_, settled_.tested(base.free), candidates, rows_, how);
   }
 
   /// The limits that the campaign would have with further screens. They come from the trials of the last round, with
@@ -102,9 +106,9 @@ class DiagnosisLoop {
     const Campaign more = with_further_screens(campaign_, axis, rules_);
     ScoreTestOptions how = test_options();
     how.replicates = 0;
-    const auto runs = fits_.observed_in(more, base.model);
+    const auto runs = fits_.observed_in(more, settled_.model);
     const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.runs, found, rules_);
-    const ScoreTest test = score_test(more, {base.model, base.free, base.z, runs}, candidates, rows_, how);
+    const ScoreTest test = score_test(more, {settled_.model, base.free, settled_.z, runs}, candidates, rows_, how);
     return limits_by_parameter(more, axis, test, candidates, rules_);
   }
 
@@ -239,6 +243,7 @@ class DiagnosisLoop {
   const DiagnosisRules& rules_;
   TracedVertices traced_{0};
   EffectFits fits_;
+  SettledGround settled_;  // where the last score test was made
   double progress_ = 0.0, ground_ = 0.0;
 };
 

@@ -2,10 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
-#include <set>
 #include <utility>
 
+#include "directions.hpp"
 #include "talus/fit/campaign/block_draws.hpp"
 #include "talus/fit/diagnose/projection.hpp"
 #include "talus/fit/diagnose/residual.hpp"
@@ -16,99 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// Mean residual of the trials of one block; zero where fewer than five were seen.
-VectorXd mean_residual(const ResidualSpace& space, std::size_t block, const BlockRuns& runs) {
-  VectorXd sum = VectorXd::Zero(space.size()), seen = sum;
-  for (std::size_t t = 0; t < runs.trials; ++t) {
-    const Residual r = space.of_trial(block, runs, t);
-    for (Index i = 0; i < r.size(); ++i)
-      if (!std::isnan(r[i])) sum[i] += r[i], seen[i] += 1.0;
-  }
-  for (Index i = 0; i < seen.size(); ++i) sum[i] = seen[i] >= 5.0 ? sum[i] / seen[i] : 0.0;
-  return sum;
-}
-
-/// Properties of the blocks that a signature may depend on: a constant, mass, shape, place of release, day.
-MatrixXd covariates_of(const Campaign& campaign, const std::vector<std::size_t>& blocks) {
-  constexpr Index kContinuous = 7;
-  std::set<int> days;
-  for (const std::size_t b : blocks) days.insert(campaign.blocks[b].day);
-  const auto n = static_cast<Index>(blocks.size());
-  MatrixXd x(n, kContinuous + std::ssize(days) - 1);
-  for (Index i = 0; i < n; ++i) {
-    const MeasuredBlock& b = campaign.blocks[blocks[static_cast<std::size_t>(i)]];
-    x.row(i).head(kContinuous) << 1.0, std::log(b.mass), std::log(b.axes.x() / b.axes.z()),
-        std::log(b.axes.x() / b.axes.y()), b.x, b.y, b.release_height;
-    Index column = kContinuous;
-    for (auto day = std::next(days.begin()); day != days.end(); ++day) x(i, column++) = b.day == *day ? 1.0 : 0.0;
-  }
-  for (Index j = 1; j < x.cols(); ++j) {
-    x.col(j).array() -= x.col(j).mean();
-    const double norm = x.col(j).norm() / std::sqrt(static_cast<double>(n));
-    x.col(j) = norm > 1e-9 ? VectorXd(x.col(j) / norm) : VectorXd(VectorXd::Zero(n));
-  }
-  return x;
-}
-
-/// Signatures of all directions in which the model could move: how each changes the residuals of the blocks.
-class Directions {
- public:
-  /// @param unmoved  the base again, with the random numbers of the runs that will be added: their noise is the same in
-  /// both
-  Directions(const Campaign& campaign, const ResidualSpace& space, const std::vector<BlockRuns>& base,
-             const std::vector<BlockRuns>& unmoved, const std::vector<bool>& rows)
-      : space_(space), base_(base) {
-    for (std::size_t b = 0; b < rows.size(); ++b)
-      if (rows[b] && base[b].trials > 0) blocks_.push_back(b), streams_.push_back(campaign.blocks[b].stream);
-    const MatrixXd x = covariates_of(campaign, blocks_);
-    smoother_ = x * (x.transpose() * x + 1e-6 * MatrixXd::Identity(x.cols(), x.cols())).ldlt().solve(x.transpose());
-    for (const std::size_t b : blocks_) rest_.push_back(mean_residual(space, b, unmoved[b]));
-  }
-
-  void add(const std::vector<BlockRuns>& moved) {
-    MatrixXd signature(static_cast<Index>(blocks_.size()), space_.size());
-    for (std::size_t i = 0; i < blocks_.size(); ++i)
-      signature.row(static_cast<Index>(i)) = mean_residual(space_, blocks_[i], moved[blocks_[i]]) - rest_[i];
-    signatures_.push_back(smoother_ * signature);
-  }
-
-  Index size() const { return static_cast<Index>(signatures_.size()); }
-  std::span<const std::uint32_t> streams() const { return streams_; }
-
-  /// Scores of a residual of block number i, by direction.
-  VectorXd scores(std::size_t i, const VectorXd& whitened) const {
-    VectorXd s(size());
-    for (Index k = 0; k < size(); ++k)
-      s[k] = signatures_[static_cast<std::size_t>(k)].row(static_cast<Index>(i)).dot(whitened);
-    return s;
-  }
-
-  /// @param trials    by block: the scores of its base trials, one column each
-  /// @param measured  the scores of the measurements, summed over the blocks
-  void score_all(std::vector<MatrixXd>& trials, VectorXd& measured) const {
-    measured = VectorXd::Zero(size());
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      const BlockRuns& runs = base_[blocks_[i]];
-      MatrixXd u(size(), runs.trials);
-      for (std::size_t t = 0; t < runs.trials; ++t)
-        u.col(static_cast<Index>(t)) = scores(i, space_.whitened(space_.of_own_trial(blocks_[i], runs, t)));
-      const VectorXd mean = u.rowwise().mean();
-      u.colwise() -= mean;
-      measured += scores(i, space_.whitened(space_.of_measured(blocks_[i]))) - mean;
-      trials.push_back(std::move(u));
-    }
-  }
-
- private:
-  const ResidualSpace& space_;
-  const std::vector<BlockRuns>& base_;
-  std::vector<std::size_t> blocks_;
-  std::vector<std::uint32_t> streams_;  // of the blocks
-  MatrixXd smoother_;
-  std::vector<VectorXd> rest_;        // by block: mean residual of the base itself, which is noise
-  std::vector<MatrixXd> signatures_;  // by direction: blocks x components
-};
 
 /// The score of every direction in data set number `replicate`: one trial of each block stands in for what was
 /// measured.
@@ -177,25 +83,29 @@ void sharpen(const Eigen::VectorXd& errors, const std::vector<std::size_t>& memb
   }
 }
 
-/// The step of a parameter of the base, away from its upper bound [z].
-double step_of(const Parameter& parameter, double z, double size) {
-  return parameter.value(z + size) < parameter.upper ? size : -size;
-}
-
-/// The directions of the base's parameters, then those of the candidates.
-void add_directions(Directions& directions, const TestedModel& base, std::span<const Candidate> candidates,
-                    const DiagnosisRules& rules, const std::function<std::vector<BlockRuns>(const Model&)>& observed) {
-  for (std::size_t i = 0; i < base.free.size(); ++i) {
-    VectorXd moved = base.z;
-    moved[static_cast<Index>(i)] += step_of(base.free[i], base.z[static_cast<Index>(i)], rules.base_step);
-    directions.add(observed(model_at(base.model, base.free, moved)));
-  }
+/// Adds the directions of the candidates.
+void add_candidates(Directions& directions, const Model& base, std::span<const Candidate> candidates,
+                    const DiagnosisRules& rules, const Observer& observed) {
   for (const Candidate& candidate : candidates)
     for (std::size_t p = 0; p < candidate.tested; ++p) {
       VectorXd moved = VectorXd::Zero(static_cast<Index>(candidate.parameters.size()));
       moved[static_cast<Index>(p)] = rules.noticed;
-      directions.add(observed(with(base.model, candidate, moved)));
+      directions.add(observed(with(base, candidate, moved)));
     }
+}
+
+/// Runs with the random numbers of the test.
+Observer observer_of(const Campaign& campaign, const std::vector<bool>& rows, const ScoreTestOptions& options) {
+  return [&](const Model& model) {
+    if (options.proceed && !options.proceed()) throw FitInterrupted{};
+    return observe(campaign, model,
+                   {.trials = options.trials,
+                    .seed = options.seed,
+                    .threads = options.threads,
+                    .blocks = rows,
+                    .effort = effort_of(options.rules.search),
+                    .traced = options.traced});
+  };
 }
 
 }  // namespace
@@ -225,38 +135,50 @@ Corrected corrected(std::span<const std::vector<double>> simulated, std::span<co
   return out;
 }
 
+SettledGround settled_ground(const Campaign& campaign, const TestedModel& base, const std::vector<bool>& rows,
+                             const ScoreTestOptions& options, const Observer& simulated) {
+  const Observer observed = observer_of(campaign, rows, options);
+  const DiagnosisRules& rules = options.rules;
+  SettledGround ground{base.model, base.z, base.runs};
+  for (int step = 0; step < rules.settling; ++step) {
+    const TestedModel now{ground.model, base.free, ground.z, ground.runs};
+    const ResidualSpace space(campaign, ground.runs, rules);
+    Directions directions(campaign, space, ground.runs, observed(ground.model), rows);
+    const VectorXd steps = directions.add_ground(now, observed, rules);
+    std::vector<MatrixXd> trials;
+    VectorXd measured;
+    directions.score_all(trials, measured);
+    MatrixXd information = covariance_of(trials);
+    information.diagonal().array() += step_prior(rules);
+    const VectorXd move = steps.cwiseProduct(information.ldlt().solve(measured));
+    for (Index i = 0; i < move.size(); ++i) {
+      const Parameter& p = base.free[static_cast<std::size_t>(i)];
+      const double z = ground.z[i] + std::clamp(move[i], -rules.longest_move, rules.longest_move);
+      ground.z[i] = std::clamp(z, p.z(p.lower), p.z(p.upper));
+    }
+    ground.model = model_at(base.model, base.free, ground.z);
+    ground.runs = simulated(ground.model);
+  }
+  return ground;
+}
+
 ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::span<const Candidate> candidates,
                      const std::vector<bool>& rows, const ScoreTestOptions& options) {
-  const auto observed = [&](const Model& model) {
-    if (options.proceed && !options.proceed()) throw FitInterrupted{};
-    return observe(campaign, model,
-                   {.trials = options.trials,
-                    .seed = options.seed,
-                    .threads = options.threads,
-                    .blocks = rows,
-                    .effort = effort_of(options.rules.search),
-                    .traced = options.traced});
-  };
+  const Observer observed = observer_of(campaign, rows, options);
   const DiagnosisRules& rules = options.rules;
   const ResidualSpace space(campaign, base.runs, rules);
   Directions directions(campaign, space, base.runs, observed(base.model), rows);
-  add_directions(directions, base, candidates, rules, observed);
+  const VectorXd steps = directions.add_ground(base, observed, rules);
+  add_candidates(directions, base.model, candidates, rules, observed);
   std::vector<MatrixXd> trials;
   VectorXd measured;
   directions.score_all(trials, measured);
-  MatrixXd covariance = MatrixXd::Zero(directions.size(), directions.size());
-  for (const MatrixXd& u : trials) covariance += u * u.transpose() / static_cast<double>(u.cols());
-
-  const auto n_base = static_cast<Index>(base.free.size());
-  VectorXd steps(n_base);
-  for (Index i = 0; i < n_base; ++i)
-    steps[i] = step_of(base.free[static_cast<std::size_t>(i)], base.z[i], rules.base_step);
+  const MatrixXd covariance = covariance_of(trials);
   ScoreTest test;
   std::vector<Projection> projections;
   std::vector<std::size_t> effect_of;
-  for (const TestedPlace& place : places_of(candidates, n_base, directions.size(), rules)) {
-    projections.emplace_back(place, covariance, steps,
-                             rules.base_step * rules.base_step / (rules.base_sd * rules.base_sd));
+  for (const TestedPlace& place : places_of(candidates, steps.size(), directions.size(), rules)) {
+    projections.emplace_back(place, covariance, steps, step_prior(rules));
     Verdict verdict = projections.back().verdict(measured);
     verdict.members = place.members;
     const std::string& name = candidates[place.members.front()].effect;

@@ -62,6 +62,28 @@ struct TestedModel {
   const std::vector<BlockRuns>& runs;  ///< of the asked blocks, with random numbers that the search has not used
 };
 
+/// Runs of a model, with the same random numbers for every model.
+using Observer = std::function<std::vector<BlockRuns>(const Model&)>;
+
+/// A model with its ground moved to where the score test is made.
+struct SettledGround {
+  Model model;
+  Eigen::VectorXd z;            ///< of the free parameters
+  std::vector<BlockRuns> runs;  ///< as TestedModel::runs
+
+  TestedModel tested(std::span<const Parameter> free) const { return {model, free, z, runs}; }
+};
+
+/// Moves the ground of a fitted model, in Newton steps, to where the residual that the score test takes has no part
+/// left that the ground could explain. A fit ends elsewhere: its objective is another one, and its prior holds it back.
+/// The signatures are those of small changes, so that what a large one would explain is left over there and taken for
+/// an effect.
+///
+/// @param simulated  makes the runs of a moved model as TestedModel::runs were made
+/// Throws FitInterrupted when `options.proceed` returns false. Source: docs/diagnosis-method.md, "The score test".
+SettledGround settled_ground(const Campaign& campaign, const TestedModel& base, const std::vector<bool>& rows,
+                             const ScoreTestOptions& options, const Observer& simulated);
+
 /// Tests every candidate against the residual of a model, with the model's own parameters free to move along.
 ///
 /// The residual of each block is compared with the one that a small amount of the candidate would leave (simulated: its

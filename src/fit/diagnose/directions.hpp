@@ -1,0 +1,51 @@
+#pragma once
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "talus/fit/diagnose/residual.hpp"
+#include "talus/fit/diagnose/score_test.hpp"
+
+namespace talus {
+
+/// Signatures of all directions in which the model could move: how each changes the residuals of the blocks.
+class Directions {
+ public:
+  /// @param unmoved  the base again, with the random numbers of the runs that will be added: their noise is the same in
+  /// both
+  Directions(const Campaign& campaign, const ResidualSpace& space, const std::vector<BlockRuns>& base,
+             const std::vector<BlockRuns>& unmoved, const std::vector<bool>& rows);
+
+  void add(const std::vector<BlockRuns>& moved);
+
+  /// Adds a direction for each free parameter of the model that is tested. @return by how much each was moved [z]
+  Eigen::VectorXd add_ground(const TestedModel& base, const Observer& observed, const DiagnosisRules& rules);
+
+  Eigen::Index size() const { return std::ssize(signatures_); }
+  std::span<const std::uint32_t> streams() const { return streams_; }
+
+  /// @param trials    by block: the scores of its base trials, one column each
+  /// @param measured  the scores of the measurements, summed over the blocks
+  void score_all(std::vector<Eigen::MatrixXd>& trials, Eigen::VectorXd& measured) const;
+
+ private:
+  Eigen::VectorXd scores(std::size_t i, const Eigen::VectorXd& whitened) const;
+
+  const ResidualSpace& space_;
+  const std::vector<BlockRuns>& base_;
+  std::vector<std::size_t> blocks_;
+  std::vector<std::uint32_t> streams_;  // of the blocks
+  Eigen::MatrixXd smoother_;
+  std::vector<Eigen::VectorXd> rest_;        // by block: mean residual of the base itself, which is noise
+  std::vector<Eigen::MatrixXd> signatures_;  // by direction: blocks x components
+};
+
+/// Variance of the scores of one data set under the model, directions x directions.
+Eigen::MatrixXd covariance_of(const std::vector<Eigen::MatrixXd>& trials);
+
+/// Precision of a step of the base by its prior.
+inline double step_prior(const DiagnosisRules& rules) {
+  return rules.base_step * rules.base_step / (rules.base_sd * rules.base_sd);
+}
+
+}  // namespace talus
