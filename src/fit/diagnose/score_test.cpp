@@ -150,7 +150,8 @@ SettledGround settled_ground(const Campaign& campaign, const TestedModel& base, 
     directions.score_all(trials, measured);
     MatrixXd information = covariance_of(trials);
     information.diagonal().array() += step_prior(rules);
-    const VectorXd move = steps.cwiseProduct(information.ldlt().solve(measured));
+    const VectorXd explained = information.ldlt().solve(measured), move = steps.cwiseProduct(explained);
+    if (measured.dot(explained) <= static_cast<double>(move.size())) break;  // its mean where the ground is right
     for (Index i = 0; i < move.size(); ++i) {
       const Parameter& p = base.free[static_cast<std::size_t>(i)];
       const double z = ground.z[i] + std::clamp(move[i], -rules.longest_move, rules.longest_move);

@@ -41,9 +41,8 @@ struct DiagnosisRules {
   /// Standard deviation of a parameter of the base [z]: that of its prior, so that what the data do not constrain stays
   /// in place.
   double base_sd = 1.0;
-  /// Newton steps of the ground before the test [-]: after two, what its parameters could still explain is no more than
-  /// the noise of the trials.
-  int settling = 2;
+  /// Newton steps of the ground before the test, at most [-]: mostly one or two are enough.
+  int settling = 4;
   /// Longest step of a parameter of the ground [z]: the standard deviation of its prior.
   double longest_move = 1.0;
 
