@@ -714,6 +714,22 @@ class FromPython(Case):
         self.assertTrue(good)
         self.assertEqual(results, {})
 
+    def test_a_profile_over_a_terrain_is_loaded_and_one_of_a_file_is_not(self):
+        line = QgsVectorLayer("LineString?crs=EPSG:2056", "line", "memory")
+        drawn = QgsFeature()
+        drawn.setGeometry(QgsGeometry.fromWkt("LineString (2650100 1170500, 2651000 1170500)"))
+        line.dataProvider().addFeature(drawn)
+        for more, layers in ({"DEM": DEM, "LINE": line, "SOURCE_X": "20,60", "DIAMETER": 1.2, "SCREEN_X": "300"}, 4), (
+                {"PROFILE": os.path.join(HERE, "../../data/profile/profile.toml")}, 0):
+            context = QgsProcessingContext()
+            _, good = self.run_algorithm("profile", {"TRAJECTORIES": 20, "OUT": self.path(f"profile{layers}"), "LOAD": True, **more},
+                                         context=context)
+            self.assertTrue(good)
+            self.assertEqual(len(context.layersToLoadOnCompletion()), layers)
+        algorithm = QgsApplication.processingRegistry().createAlgorithmById("talus:profile")
+        good, message = algorithm.checkParameterValues({"DEM": DEM, "LINE": line, "OUT": self.path("none")}, QgsProcessingContext())
+        self.assertEqual((good, message), (False, "Give the terrain, a line over it and where blocks start, or the file of a profile."))
+
     def test_cancel_while_a_layer_is_written(self):
         from talus_qgis import layers
 

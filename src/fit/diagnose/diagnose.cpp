@@ -88,13 +88,21 @@ class DiagnosisLoop {
     return how;
   }
 
-  /// Tests at the ground that `settled_` then is.
+  /// Tests at the model that `settled_` then is.
   ScoreTest tested(const FittedModel& base, std::span<const Candidate> candidates) {
     const Timesheet::Phase phase(fits_.times(), "tests");
-    const ScoreTestOptions how = test_options();
-    settled_ = settled_ground(campaign_, {base.model, base.free, base.z, base.runs}, rows_, how,
-                              [this](const Model& model) { return fits_.observed_in(campaign_, model); });
-    return score_test(campaign_, settled_.tested(base.free), candidates, rows_, how);
+    SettledTest out =
+        settled_test(campaign_, {base.model, base.free, base.z, base.runs}, candidates, rows_, test_options(),
+                     [this](const Model& model) { return fits_.observed_in(campaign_, model); });
+    settled_ = std::move(out.model);
+    return std::move(out.test);
+  }
+
+  /// How far `settled_` is from the fit.
+  Settling settling_of(const FittedModel& base) const {
+    const auto n = static_cast<std::size_t>(base.z.size());
+    return {n, settled_.statistic_of_fit, settled_.statistic,
+            n > 0 ? (settled_.z - base.z).cwiseAbs().maxCoeff() : 0.0};
   }
 
   /// The limits that the campaign would have with further screens. They come from the trials of the last round, with
@@ -122,6 +130,7 @@ class DiagnosisLoop {
     advance(kTestShare);
     const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.runs, found, rules_);
     const ScoreTest test = tested(base, candidates);
+    round.settling = settling_of(base);
     round.families = tested_families(base, test, found);
     round.p_value = smallest_corrected(round.families);
     const Axis axis = axis_of(campaign_, base.runs);
@@ -243,7 +252,7 @@ class DiagnosisLoop {
   const DiagnosisRules& rules_;
   TracedVertices traced_{0};
   EffectFits fits_;
-  SettledGround settled_;  // where the last score test was made
+  SettledModel settled_;  // where the last score test was made
   double progress_ = 0.0, ground_ = 0.0;
 };
 

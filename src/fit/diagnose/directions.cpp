@@ -69,7 +69,7 @@ void Directions::add(const std::vector<BlockRuns>& moved) {
   signatures_.push_back(smoother_ * signature);
 }
 
-VectorXd Directions::add_ground(const TestedModel& base, const Observer& observed, const DiagnosisRules& rules) {
+VectorXd Directions::add_free(const TestedModel& base, const Observer& observed, const DiagnosisRules& rules) {
   VectorXd steps(std::ssize(base.free));
   for (Index i = 0; i < steps.size(); ++i) {
     steps[i] = step_of(base.free[static_cast<std::size_t>(i)], base.z[i], rules.base_step);

@@ -19,7 +19,7 @@ class Directions {
   void add(const std::vector<BlockRuns>& moved);
 
   /// Adds a direction for each free parameter of the model that is tested. @return by how much each was moved [z]
-  Eigen::VectorXd add_ground(const TestedModel& base, const Observer& observed, const DiagnosisRules& rules);
+  Eigen::VectorXd add_free(const TestedModel& base, const Observer& observed, const DiagnosisRules& rules);
 
   Eigen::Index size() const { return std::ssize(signatures_); }
   std::span<const std::uint32_t> streams() const { return streams_; }

@@ -108,6 +108,26 @@ Observer observer_of(const Campaign& campaign, const std::vector<bool>& rows, co
   };
 }
 
+/// The scores of the free parameters of a model.
+struct OwnScores {
+  VectorXd move;           ///< the Newton step, from where the model is [z]
+  double statistic = 0.0;  ///< s' I^-1 s
+};
+
+OwnScores own_scores(const Campaign& campaign, const TestedModel& at, const std::vector<bool>& rows,
+                     const Observer& observed, const DiagnosisRules& rules) {
+  const ResidualSpace space(campaign, at.runs, rules);
+  Directions directions(campaign, space, at.runs, observed(at.model), rows);
+  const VectorXd steps = directions.add_free(at, observed, rules);
+  std::vector<MatrixXd> trials;
+  VectorXd measured;
+  directions.score_all(trials, measured);
+  MatrixXd information = covariance_of(trials);
+  information.diagonal().array() += step_prior(rules);
+  const VectorXd explained = information.ldlt().solve(measured);
+  return {steps.cwiseProduct(explained), measured.dot(explained)};
+}
+
 }  // namespace
 
 Corrected corrected(std::span<const std::vector<double>> simulated, std::span<const double> measured) {
@@ -135,32 +155,29 @@ Corrected corrected(std::span<const std::vector<double>> simulated, std::span<co
   return out;
 }
 
-SettledGround settled_ground(const Campaign& campaign, const TestedModel& base, const std::vector<bool>& rows,
-                             const ScoreTestOptions& options, const Observer& simulated) {
+SettledModel settled_model(const Campaign& campaign, const TestedModel& fitted, const std::vector<bool>& rows,
+                           const ScoreTestOptions& options, const Observer& simulated) {
   const Observer observed = observer_of(campaign, rows, options);
   const DiagnosisRules& rules = options.rules;
-  SettledGround ground{base.model, base.z, base.runs};
-  for (int step = 0; step < rules.settling; ++step) {
-    const TestedModel now{ground.model, base.free, ground.z, ground.runs};
-    const ResidualSpace space(campaign, ground.runs, rules);
-    Directions directions(campaign, space, ground.runs, observed(ground.model), rows);
-    const VectorXd steps = directions.add_ground(now, observed, rules);
-    std::vector<MatrixXd> trials;
-    VectorXd measured;
-    directions.score_all(trials, measured);
-    MatrixXd information = covariance_of(trials);
-    information.diagonal().array() += step_prior(rules);
-    const VectorXd explained = information.ldlt().solve(measured), move = steps.cwiseProduct(explained);
-    if (measured.dot(explained) <= static_cast<double>(move.size())) break;  // its mean where the ground is right
-    for (Index i = 0; i < move.size(); ++i) {
-      const Parameter& p = base.free[static_cast<std::size_t>(i)];
-      const double z = ground.z[i] + std::clamp(move[i], -rules.longest_move, rules.longest_move);
-      ground.z[i] = std::clamp(z, p.z(p.lower), p.z(p.upper));
+  SettledModel here{fitted.model, fitted.z, fitted.runs}, best = here;
+  for (int step = 0; fitted.z.size() > 0; ++step) {
+    const OwnScores own = own_scores(campaign, here.tested(fitted.free), rows, observed, rules);
+    here.statistic = own.statistic;
+    if (step == 0) here.statistic_of_fit = own.statistic;
+    if (step == 0 || here.statistic < best.statistic) best = here;
+    if (step == rules.settling || here.statistic < rules.settled * static_cast<double>(here.z.size())) break;
+    const double longest = own.move.cwiseAbs().maxCoeff();
+    const VectorXd from = here.z;
+    here.z += own.move * std::min(1.0, rules.longest_move / longest);
+    for (Index i = 0; i < here.z.size(); ++i) {
+      const Parameter& p = fitted.free[static_cast<std::size_t>(i)];
+      here.z[i] = std::clamp(here.z[i], p.z(p.lower), p.z(p.upper));
     }
-    ground.model = model_at(base.model, base.free, ground.z);
-    ground.runs = simulated(ground.model);
+    if (here.z == from) break;
+    here.model = model_at(fitted.model, fitted.free, here.z);
+    here.runs = simulated(here.model);
   }
-  return ground;
+  return best;
 }
 
 ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::span<const Candidate> candidates,
@@ -169,7 +186,7 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
   const DiagnosisRules& rules = options.rules;
   const ResidualSpace space(campaign, base.runs, rules);
   Directions directions(campaign, space, base.runs, observed(base.model), rows);
-  const VectorXd steps = directions.add_ground(base, observed, rules);
+  const VectorXd steps = directions.add_free(base, observed, rules);
   add_candidates(directions, base.model, candidates, rules, observed);
   std::vector<MatrixXd> trials;
   VectorXd measured;
@@ -197,6 +214,16 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
     return a.p_value != b.p_value ? a.p_value < b.p_value : more_significant(a.best, b.best);
   });
   return test;
+}
+
+SettledTest settled_test(const Campaign& campaign, const TestedModel& fitted, std::span<const Candidate> candidates,
+                         const std::vector<bool>& rows, const ScoreTestOptions& options, const Observer& simulated) {
+  SettledTest out{settled_model(campaign, fitted, rows, options, simulated), {}};
+  out.test = score_test(campaign, out.model.tested(fitted.free), candidates, rows, options);
+  for (EffectVerdict& effect : out.test.effects)
+    for (Verdict* verdict : {&effect.best, &effect.second})
+      if (verdict->ground.size() > 0) verdict->ground += out.model.z - fitted.z;
+  return out;
 }
 
 }  // namespace talus

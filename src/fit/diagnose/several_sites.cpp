@@ -102,10 +102,10 @@ class SitesLoop {
     how.replicates = replicates();
     how.rules = rules_;
     how.proceed = [this] { return proceeds(1.0); };
-    const SettledGround settled =
-        settled_ground(campaign, {out.base.model, out.base.free, out.base.z, out.base.runs}, rows, how,
-                       [&](const Model& model) { return fits.observed_in(campaign, model); });
-    tests.score_test = score_test(campaign, settled.tested(out.base.free), tests.candidates, rows, how);
+    tests.score_test =
+        settled_test(campaign, {out.base.model, out.base.free, out.base.z, out.base.runs}, tests.candidates, rows, how,
+                     [&](const Model& model) { return fits.observed_in(campaign, model); })
+            .test;
     const ResidualSpace space(campaign, out.base.runs, rules_);
     out.families = test_families({campaign, space, out.base.runs, rows, tests.score_test},
                                  {how.replicates, own.seed, rules_, options_.level_of_round(0)});

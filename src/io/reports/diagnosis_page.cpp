@@ -219,6 +219,19 @@ Markup residual_rows(const std::vector<ResidualRow>& rows) {
   return html + "</table>\n";
 }
 
+/// Where place and instrument were tested.
+Markup settling_text(const Settling& settling) {
+  if (std::isnan(settling.statistic)) return {};
+  Markup html = "<p>Place and instrument were tested "_html;
+  if (settling.farthest > 0.0)
+    html += "where the fitted numbers have settled, up to " + with_decimals(settling.farthest, 1) +
+            " standard deviations of the prior from the fit: their score statistic is " +
+            with_digits(settling.statistic, 2) + ", at the fit " + with_digits(settling.statistic_of_fit, 2);
+  else
+    html += "at the fit: the score statistic of its numbers is " + with_digits(settling.statistic, 2);
+  return html + " (in a right model " + std::to_string(settling.parameters) + " on average).</p>\n";
+}
+
 /// The families that are significant, and those that could not name anything.
 /// @param level  of significance in this round
 Markup families_sentence(const DiagnosisRound& round, double level) {
@@ -290,7 +303,8 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
       "too small: of 90 campaigns that an earlier build simulated without an effect 11, 16 and 13 % had one of 5 % or "
       "less (docs/diagnosis-results.md), more where blocks of a group share a ground or an error.</p>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
-    html += "<h3>Round "_html + std::to_string(i + 1) + "</h3>\n" + families_table(d.rounds[i]);
+    html += "<h3>Round "_html + std::to_string(i + 1) + "</h3>\n" + families_table(d.rounds[i]) +
+            settling_text(d.rounds[i].settling);
   html +=
       "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where it may be named, else "
       "with the ground held. The objective is the error with groups of n rows that count n / (n + 10).</p>\n";

@@ -79,6 +79,11 @@ Json rounds_json(const DiagnosisRecord& record) {
     }
     turn["effects_tried"] = round.tried;
     turn["p_value"] = json_of(round.p_value);
+    if (const Settling& settling = round.settling; !std::isnan(settling.statistic))
+      turn["settling"] = {{"parameters", settling.parameters},
+                          {"statistic_of_fit", json_of(settling.statistic_of_fit)},
+                          {"statistic", json_of(settling.statistic)},
+                          {"farthest_move_sd", json_of(settling.farthest)}};
     if (i > 0) {
       turn["families"] = families_of(round);
       turn["candidates"] = candidates_of(round, record.candidates[i]);

@@ -404,9 +404,9 @@ TEST(ScoreTest, IsSilentAboutTheModelsOwnDataAsOftenAsItSays) {
   EXPECT_LE(halves, 16);
 }
 
-/// 20 data sets of a ground whose roughness lies 0.8 sd of the prior below that of the model. At the model itself a bias
-/// of the instruments seems to be there in most of them; where the ground has settled, as often as the test says.
-TEST(SettledGround, IsTheTrueOneOnAverageAndLeavesNoFalseAlarm) {
+/// 20 data sets of a ground whose roughness lies 0.8 sd of the prior below that of the model. At the model itself a
+/// bias of the instruments seems to be there in most of them; where the ground has settled, as often as the test says.
+TEST(SettledModel, IsTheTrueOneOnAverageAndLeavesNoFalseAlarm) {
   Campaign c = slope_campaign(30);
   const Model model = model_of_preset(c, "upper-talus-3d");
   const auto free = ground_parameters(c, model, std::vector<std::string>{"theta_scale"}, {true});
@@ -425,8 +425,8 @@ TEST(SettledGround, IsTheTrueOneOnAverageAndLeavesNoFalseAlarm) {
     measure(c, truth, 100 + set);
     const TestedModel base{model, free, z, runs};
     alarms_before += score_test(c, base, list, rows, quick()).p_value < 0.2;
-    const SettledGround ground =
-        settled_ground(c, base, rows, quick(), [&](const Model& moved) { return observe(c, moved, kOfBase); });
+    const SettledModel ground =
+        settled_model(c, base, rows, quick(), [&](const Model& moved) { return observe(c, moved, kOfBase); });
     mean += ground.z[0] / kSets;
     alarms += score_test(c, ground.tested(free), list, rows, quick()).p_value < 0.2;
   }

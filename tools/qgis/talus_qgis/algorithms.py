@@ -72,7 +72,8 @@ ALGORITHMS = [
      "bands": {"dem"}, "shapes": {"line": [QgsProcessing.TypeVectorLine]}, "labels": {"trajectories": "number-of-blocks"},
      "advanced": {"profile", "deformation-coefficient"}, "needs": [("profile",), ("dem", "line", "source-x")],
      "needs text": "Give the terrain, a line over it and where blocks start, or the file of a profile.",
-     "files": {"record": "run.json", "picture": "profile.svg"}, "folder": "out", "nothing to load": True},
+     "files": {"record": "run.json", "picture": "profile.svg"}, "folder": "out",
+     "layers": ("profile.gpkg", ["crossings", "stops", "profile", "bins"])},
     {"id": "calibrate", "command": "calibrate", "help": "closing-the-loop", "phases": ["fit"], "folder": "out",
      "nothing to load": True,
      "advanced": {"fit", "trials", "starts", "share", "parameters"},
@@ -610,7 +611,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if self.parameterAsBool(parameters, "LOAD", context) and not table.get("nothing to load"):
             if parameters.get("RESUME") and self.parameterAsBool(parameters, "RESUME", context):
                 begin = 0.0  # of a run that was done already, nothing is written anew
-            results.load(folder, results.files_of(folder, begin), "Talus: " + os.path.basename(folder), context)
+            rows = results.layers_of(folder, *table["layers"]) if "layers" in table else results.files_of(folder, begin)
+            results.load(folder, rows, "Talus: " + os.path.basename(folder), context)
         return {key: value for key, value in found.items() if value}
 
     @staticmethod

@@ -89,6 +89,15 @@ def files_of(folder, begin):
     return sorted(found, key=lambda row: _place(row[3], row[1]))
 
 
+def layers_of(folder, file, names):
+    """Layers of one file, as rows of `files_of`, the top first and the last hidden; none where they have no coordinate system
+    (a profile of x and z)."""
+    uri = os.path.join(folder, file) + "|layername="
+    if not QgsVectorLayer(uri + names[0], "", "ogr").crs().isValid():
+        return []
+    return [(uri + name, title_of(name), file, rank, name != names[-1]) for rank, name in enumerate(names)]
+
+
 def _place(rank, title):
     """What layers are sorted by: shorter titles first, as 30 kJ before 300 kJ."""
     return rank, len(title), title

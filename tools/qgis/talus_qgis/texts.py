@@ -143,6 +143,10 @@ KEYS = {
     # titles of layers that are not in talus.qgs
     "title vertices": ("Vertices of the paths", "Stützpunkte der Bahnen"),
     "title pits": ("Pits", "Mulden"),
+    "title crossings": ("Crossings", "Durchgänge"),
+    "title stops": ("Ends of the blocks", "Enden der Blöcke"),
+    "title profile": ("Profile", "Profil"),
+    "title bins": ("Speed and jump along the profile", "Geschwindigkeit und Sprung entlang des Profils"),
     "title source_polygons": ("Candidate sources", "Mögliche Ausbruchgebiete"),
     "title source_points": ("Candidate source cells", "Mögliche Ausbruchzellen"),
 }

@@ -72,6 +72,13 @@ inline bool names_effect(std::string_view verdict) {
   return verdict != "none" && verdict != "unexplained";
 }
 
+/// How the free parameters of a fit moved to where the score test was made: `SettledModel`.
+struct Settling {
+  std::size_t parameters = 0;
+  double statistic_of_fit = kNotGiven, statistic = kNotGiven;  ///< of their own scores, before and after
+  double farthest = kNotGiven;                                 ///< move of the one that moved most [z]
+};
+
 /// One turn of the loop.
 struct DiagnosisRound {
   std::string effect = "none";  ///< the one that was found, "none" or "unexplained"
@@ -82,6 +89,7 @@ struct DiagnosisRound {
   std::vector<ResidualRow> residual;        ///< of the fitting rows, before the effect is added
   std::vector<FamilyTest> families;         ///< all, in a fixed order
   double p_value = 1.0;                     ///< the smallest of the families' corrected ones
+  Settling settling;                        ///< before the tests of place and instrument
   std::vector<DetectionLimit> limits;       ///< of the effects that the base lacks
 };
 

@@ -41,9 +41,13 @@ struct DiagnosisRules {
   /// Standard deviation of a parameter of the base [z]: that of its prior, so that what the data do not constrain stays
   /// in place.
   double base_sd = 1.0;
-  /// Newton steps of the ground before the test, at most [-]: mostly one or two are enough.
+  /// Newton steps of the base before the test, at most [-]: a ground at the bounds of its search, 2.5 sd from the
+  /// start, gets to the start with them.
   int settling = 4;
-  /// Longest step of a parameter of the ground [z]: the standard deviation of its prior.
+  /// Statistic of the base's own scores below which the base has settled, over the number of its parameters [-]: half
+  /// the mean of a right model.
+  double settled = 0.5;
+  /// Longest of these steps, by the parameter that moves most [z]: the standard deviation of its prior.
   double longest_move = 1.0;
 
   // The families

@@ -56,7 +56,7 @@ struct ScoreTestOptions {
 
 /// The model that is tested. The parts must outlive it.
 struct TestedModel {
-  const Model& model;                  ///< fitted
+  const Model& model;
   std::span<const Parameter> free;     ///< its fitted parameters
   const Eigen::VectorXd& z;            ///< of them
   const std::vector<BlockRuns>& runs;  ///< of the asked blocks, with random numbers that the search has not used
@@ -65,24 +65,26 @@ struct TestedModel {
 /// Runs of a model, with the same random numbers for every model.
 using Observer = std::function<std::vector<BlockRuns>(const Model&)>;
 
-/// A model with its ground moved to where the score test is made.
-struct SettledGround {
+/// A fitted model with its free parameters moved to where the score test is made.
+struct SettledModel {
   Model model;
-  Eigen::VectorXd z;            ///< of the free parameters
-  std::vector<BlockRuns> runs;  ///< as TestedModel::runs
+  Eigen::VectorXd z;             ///< of the free parameters
+  std::vector<BlockRuns> runs;   ///< as TestedModel::runs
+  double statistic = kNotGiven;  ///< of the scores of the free parameters here; its mean in a right model: their number
+  double statistic_of_fit = kNotGiven;  ///< the same of the fitted model
 
   TestedModel tested(std::span<const Parameter> free) const { return {model, free, z, runs}; }
 };
 
-/// Moves the ground of a fitted model, in Newton steps, to where the residual that the score test takes has no part
-/// left that the ground could explain. A fit ends elsewhere: its objective is another one, and its prior holds it back.
-/// The signatures are those of small changes, so that what a large one would explain is left over there and taken for
-/// an effect.
+/// Moves the free parameters of a fitted model (ground, and effects found so far) in Newton steps, until the residual
+/// that the score test takes has little left that they could explain; of the places on the way the one with the
+/// smallest statistic. A fit ends elsewhere: its objective is another one, and its prior holds it back. The signatures
+/// are those of small changes, so that what a large one would explain is left over at the fit and taken for an effect.
 ///
 /// @param simulated  makes the runs of a moved model as TestedModel::runs were made
 /// Throws FitInterrupted when `options.proceed` returns false. Source: docs/diagnosis-method.md, "The score test".
-SettledGround settled_ground(const Campaign& campaign, const TestedModel& base, const std::vector<bool>& rows,
-                             const ScoreTestOptions& options, const Observer& simulated);
+SettledModel settled_model(const Campaign& campaign, const TestedModel& fitted, const std::vector<bool>& rows,
+                           const ScoreTestOptions& options, const Observer& simulated);
 
 /// Tests every candidate against the residual of a model, with the model's own parameters free to move along.
 ///
@@ -95,5 +97,15 @@ SettledGround settled_ground(const Campaign& campaign, const TestedModel& base, 
 /// Throws FitInterrupted when `proceed` returns false.
 ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::span<const Candidate> candidates,
                      const std::vector<bool>& rows, const ScoreTestOptions& options);
+
+/// A score test, and the model at which it was made.
+struct SettledTest {
+  SettledModel model;
+  ScoreTest test;  ///< its Verdict::ground are changes of the fitted model
+};
+
+/// `score_test` of a fitted model, at its `settled_model`.
+SettledTest settled_test(const Campaign& campaign, const TestedModel& fitted, std::span<const Candidate> candidates,
+                         const std::vector<bool>& rows, const ScoreTestOptions& options, const Observer& simulated);
 
 }  // namespace talus
