@@ -234,8 +234,8 @@ class Files(OnASlope):
         write_features(self.path("line.gpkg"), "line", [(f"LINESTRING ({WEST + 150} {NORTH - 10}, {WEST + 150} {NORTH - 280})", [])])
         terrain = ["--dem", self.path("dem.tif"), "--line", self.path("line.gpkg")]
         for flags, words in (
-                ([], "no terrain, or more than one: give dem = \"FILE\" with line = \"FILE\" (--dem and --line)"),
-                (terrain, "no sources: give [sources] x = 60, or x = [50, 70] (--source-x 50,70), in m along the profile"),
+                ([], "no terrain: give --dem and --line, or in the file dem"),
+                (terrain, "no sources: give --source-x 60 or --source-x 50,70, or in the file [sources] x = 60"),
                 ([*terrain, "--source-x", "10"], "no block diameter, must have one: give --diameter"),
                 ([*terrain, "--source-x", "10", "--diameter", "60"], "flag --diameter = 60: must be 0.01 to 50 m"),
                 ([*terrain, "--source-x", "300", "--diameter", "1"], "flag --source-x = 300: must be on the profile, 0 to 270 m"),
@@ -246,6 +246,16 @@ class Files(OnASlope):
                 ([*terrain[:2], "--line", "none.gpkg", "--source-x", "20", "--diameter", "1"], "flag --line = 'none.gpkg'")):
             self.fails(2, words, arguments=("profile", *flags, "-o", self.path("out")))
             self.assertFalse(os.path.exists(self.path("out")))
+        for flags, words in ((["--surface", "bilinear"], "flag --surface: is of a DEM, must be left out"),
+                             (terrain, "flag --dem: is given beside p.toml: profile"),
+                             (["--line", self.path("line.gpkg")], "flag --line: is given beside p.toml: profile")):
+            self.fails(2, words.replace("p.toml", self.path("p.toml")), arguments=("profile", self.path("p.toml"), *flags, "-o", self.path("out")))
+        self.fails(2, "flag --dem: is given without line (--line)", arguments=("profile", *terrain[:2], "-o", self.path("out")))
+
+    def test_a_preset_that_changes_nothing_is_told(self):
+        self.scenario("x = 20", "[ground.zones.default]\ntheta_scale = 1\nEn50 = 10\nEt50 = 40\nphi = 30\nshape = [1, 1.4]\n")
+        told = self.run_well("profile", self.path("p.toml"), "-o", self.path("out"), "--trajectories", "5", "--preset", "quarry-floor-2d")
+        self.assertIn("flag --preset = 'quarry-floor-2d' changes nothing", told.stderr)
 
     def test_a_line_with_a_vertex_far_off_the_dem(self):  # each column of cells on the way there was listed: 4 GB
         write_dem(self.path("dem.tif"), np.full((60, 60), 1000.0, np.float32))
@@ -599,7 +609,7 @@ class Faults(OnASlope):
                                                    "--trajectories", "-1"])
 
     def test_the_value_of_c_is_told(self):
-        """As `talus run` does, with the way of a profile: docs/barrier.md, "The value of c"."""
+        """As `talus run` does: docs/barrier.md, "The value of c"."""
         for model, told in (("", "0.25"), ("[model]\ndeformation_coefficient = 0.16\n", "0.16"),
                             ("[model]\ndeformation_coefficient = 0.15\n", None)):
             self.scenario("x = 20", model)
@@ -608,7 +618,7 @@ class Faults(OnASlope):
             self.assertEqual(len(notes), told is not None)
             if told:
                 self.assertIn(f"energies and jumps may be too low (unsafe): c = {told} ", notes[0])
-                self.assertIn("run with deformation_coefficient = 0.15 in [model] as well", notes[0])
+                self.assertIn("run with --deformation-coefficient 0.15 as well", notes[0])
         self.scenario("x = 20")
         self.assertEqual(self.profile("--trajectories", "5", "--overwrite").stderr, "")
 

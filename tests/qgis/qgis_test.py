@@ -728,7 +728,7 @@ class FromPython(Case):
             self.assertEqual(len(context.layersToLoadOnCompletion()), layers)
         algorithm = QgsApplication.processingRegistry().createAlgorithmById("talus:profile")
         good, message = algorithm.checkParameterValues({"DEM": DEM, "LINE": line, "OUT": self.path("none")}, QgsProcessingContext())
-        self.assertEqual((good, message), (False, "Give the terrain, a line over it and where blocks start, or the file of a profile."))
+        self.assertEqual((good, message), (False, "Give the terrain, a line over it, where blocks start and their diameter, or the file of a profile."))
 
     def test_cancel_while_a_layer_is_written(self):
         from talus_qgis import layers

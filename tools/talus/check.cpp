@@ -188,12 +188,14 @@ void print_zones(const Scenario& scenario) {
 /// How often blocks fall, and what that means for the rock face.
 std::string frequency_text(const Scenario& scenario) {
   const auto rock = talus::annual_rock(scenario);
-  if (!rock) return "not given: talus hazard will need it (field frequency of the sources, --frequency or [frequency])";
-  std::string text = talus::with_digits(rock->events, 4) + " events per year, " + talus::with_digits(rock->volume, 3) +
-                     " m3 of rock a year";
-  if (rock->area > 0.0)
-    text += ": the sources would go back by " + talus::with_digits(1e3 * rock->retreat(), 2) + " mm a year";
-  return text + "; kept by energy, for talus hazard";
+  if (!rock)
+    return "not given; for talus hazard give it before the run (field frequency of the sources, --frequency or "
+           "[frequency])";
+  const std::string text =
+      talus::with_digits(rock->events, 4) + " events per year, " + talus::readable(rock->volume) + " m3 of rock a year";
+  if (!(rock->area > 0.0)) return text + " (points and lines have no area to compare it with)";
+  return text + ": the polygons would go back by " + talus::retreat_text(rock->retreat()) + " (" +
+         talus::retreat_text(talus::kMuchRetreat) + " is much in the Alps)";
 }
 
 void print_blocks(const Scenario& scenario) {

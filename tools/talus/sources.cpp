@@ -16,7 +16,7 @@ namespace {
 constexpr talus::Bounds kSlope{"slope", "deg", "cells at least this steep are candidate sources",
                                0.0,     90.0,  talus::Bounds::Between};
 
-constexpr double kMostSources = 0.5;  // share of the cells above which a given slope may not be in degrees
+constexpr double kLikelyNoDegrees = 1.6;  // a slope below it may be in radians, or a ratio of up to 58 degrees
 
 struct SourcesOptions {
   std::string dem, out;
@@ -57,10 +57,9 @@ int find_sources(const SourcesOptions& options) {
                             talus::with_digits(talus::degrees(found.steepest), 4) +
                             " deg; give a smaller one with --slope");
   out.commit();
-  const double share = static_cast<double>(found.cells) / static_cast<double>(grid.cells());
-  if (options.slope && share > kMostSources && !options.quiet)
-    say("warning", "--slope = " + talus::text_of(*options.slope) + ": " + talus::percent(share) +
-                       " of the cells are sources: is it in degrees?");
+  if (options.slope && *options.slope < kLikelyNoDegrees && !options.quiet)
+    say("warning", "--slope = " + talus::text_of(*options.slope) +
+                       ": is in degrees, and nearly every cell is steeper; for a slope of 45 degrees give --slope 45");
   if (!options.quiet) summarise(found, grid, threshold, options.out);
   return 0;
 }

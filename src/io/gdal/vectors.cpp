@@ -340,6 +340,7 @@ class Placer {
       without_geometry_.add(name, source());
       return;
     }
+    out_.features.back().has_area = !parts.polygons.empty() && parts.lines.empty() && parts.points.empty();
     box_.Merge(parts.envelope());
     const Grid& grid = heights_.grid;
     std::uint64_t on_map = 0;

@@ -35,8 +35,8 @@ std::string stretch_line(const BarrierReport& r, const StretchRow& row) {
   if (row.per_year) text += right(with_digits(row.per_year->value, 3), 10);
   text += right(kilojoules(s.largest_energy), 11) + right(with_digits(s.largest_height, 3), 11);
   if (!s.design || !s.beyond)
-    return text + "    no design: too few crossings, which tell as much as " + with_digits(s.effective, 3) +
-           " of equal frequency\n";
+    return text + "    no design: as much as " + with_digits(s.effective, 3) + " crossings of equal weight, must be " +
+           std::to_string(fewest_for_percentile(r.factors.percentile)) + "\n";
   return text + right(kilojoules(s.design->sel), 10) + right(kilojoules(s.design->mel), 10) +
          right(with_digits(s.design->height, 3), 8) + right(percent(s.beyond->sel), 11) +
          right(percent(s.beyond->height), 11) + "\n";

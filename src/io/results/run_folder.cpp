@@ -55,7 +55,7 @@ std::optional<std::string> status_note(const Json& run) {
 
 std::optional<std::string> recorded_coefficient_note(const Json& run) {
   if (!run.contains("deformation_coefficient") || !run["deformation_coefficient"].is_number()) return std::nullopt;
-  return coefficient_note(run["deformation_coefficient"].get<double>(), is_of_profile(run));
+  return coefficient_note(run["deformation_coefficient"].get<double>());
 }
 
 /// That the figures hold only while the barriers of the run stand; nothing if none stood there.
@@ -115,14 +115,13 @@ std::vector<std::string> notes_of_run(const std::filesystem::path& folder, const
   });
 }
 
-std::optional<std::string> coefficient_note(double c, bool of_profile) {
+std::optional<std::string> coefficient_note(double c) {
   constexpr double kLowC = 0.15;  // the SEL of the paper's Table 4 asks for 0.09 to 0.16
   if (!(c > kLowC)) return std::nullopt;
   return "energies and jumps may be too low (unsafe): c = " + text_of(c) +
          " (model.deformation_coefficient) is not given by the paper, and a lower c raises both. Unless the ground was "
-         "fitted to observed speeds, run with " +
-         (of_profile ? "deformation_coefficient = 0.15 in [model]" : "--deformation-coefficient 0.15") +
-         " as well and take the higher values: docs/barrier.md, \"The value of c\"";
+         "fitted to observed speeds, run with --deformation-coefficient 0.15 as well and take the higher values: "
+         "docs/barrier.md, \"The value of c\"";
 }
 
 std::string barriers_text(std::size_t barriers, const std::string& caught, bool pieces) {

@@ -173,20 +173,30 @@ void lay_profile_flags(ScenarioSpec& spec, const ProfileFlags& flags, std::vecto
   }
 }
 
-/// Adds a fault for what is not given and must be.
+/// Adds a fault for what is not given and must be, or is given in two ways.
 void check_given(const ScenarioSpec& spec, std::vector<std::string>& faults) {
   const auto given = [&](const std::string& key) { return spec.origins.contains(key); };
   const std::string in = spec.scenario.where.empty() ? "" : spec.scenario.where + ": ";
+  const auto named = [&](const std::string& key) {
+    return spec.origin(key).starts_with("flag") ? spec.origin(key) : in + key;
+  };
   const bool csv = given("profile"), dem = given("dem"), line = given("line");
-  if (csv ? dem || line : !dem || !line)
+  if (csv && (dem || line))
+    faults.push_back(named(dem ? "dem" : "line") + ": is given beside " + named("profile") +
+                     " = \"FILE.csv\", must be one of the two: leave out one");
+  if (!csv && dem != line)
+    faults.push_back(named(dem ? "dem" : "line") + ": is given without " + (dem ? "line (--line)" : "dem (--dem)") +
+                     ", must come with it");
+  if (!csv && !dem && !line)
     faults.push_back(in +
-                     "no terrain, or more than one: give dem = \"FILE\" with line = \"FILE\" (--dem and --line), or "
+                     "no terrain: give --dem and --line, or in the file dem = \"FILE\" and line = \"FILE\", or "
                      "profile = \"FILE.csv\" (columns x, z)");
   if (csv && given("surface"))
-    faults.push_back(in + "surface: is of a DEM, must be left out for a profile = \"FILE.csv\"");
+    faults.push_back(named("surface") + ": is of a DEM, must be left out for a profile = \"FILE.csv\"");
   if (!given("sources.x"))
     faults.push_back(in +
-                     "no sources: give [sources] x = 60, or x = [50, 70] (--source-x 50,70), in m along the profile");
+                     "no sources: give --source-x 60 or --source-x 50,70, or in the file [sources] x = 60 or "
+                     "x = [50, 70], in m along the profile");
 }
 
 void read_profile_keys(ScenarioSpec& spec, const std::string& file, std::vector<std::string>& faults) {

@@ -120,7 +120,8 @@ void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::string_vi
 }
 
 void warn_of_unused_preset(const ScenarioSpec& spec, std::vector<std::string>& warnings) {
-  if (spec.origin("ground.default") != kPresetFlag || !spec.default_ground.gives_all()) return;
+  const std::size_t unused = spec.profile ? 1 : 0;  // psi_scale, which a profile does not have
+  if (spec.origin("ground.default") != kPresetFlag || !spec.default_ground.gives_all(unused)) return;
   warnings.push_back("flag --preset = '" + spec.default_ground.preset + "' changes nothing: " + spec.scenario.where +
                      " gives every number of the default ground, which counts more: take out its "
                      "[ground.zones.default], or leave the flag out");

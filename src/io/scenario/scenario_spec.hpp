@@ -22,7 +22,10 @@ struct ZoneSpec {
   std::vector<Range> intervals{};          ///< of x, on a profile [m]
 
   /// Whether every number is given beside the preset, as in the complete scenario of a run.
-  bool gives_all() const { return own.size() == ground_fields().size() - 1; }  // `shape` is one key of two numbers
+  /// @param unused  numbers that need not be given
+  bool gives_all(std::size_t unused = 0) const {
+    return own.size() + unused >= ground_fields().size() - 1;  // `shape` is one key of two numbers
+  }
 };
 
 /// Origin of `ground.default` where the command line gives it.

@@ -199,8 +199,8 @@ GERMAN = {
     "{name}: band {band} is written to {path}": "{name}: Band {band} ist nach {path} geschrieben",
     "{name}: give the polygons or the raster, not both": "{name}: die Flächen oder das Raster angeben, nicht beides",
     "Give the terrain and the sources, or a scenario file.": "Gelände und Ausbruchgebiete angeben, oder eine Szenario-Datei.",
-    "Give the terrain, a line over it and where blocks start, or the file of a profile.":
-        "Das Gelände, eine Linie darüber und wo Blöcke starten angeben, oder die Datei eines Profils.",
+    "Give the terrain, a line over it, where blocks start and their diameter, or the file of a profile.":
+        "Das Gelände, eine Linie darüber, wo Blöcke starten und ihren Durchmesser angeben, oder die Datei eines Profils.",
     "{name}: '{value}' is no number: write {number}": "{name}: «{value}» ist keine Zahl: {number} schreiben",
     "The events per year are those that were given; a field frequency of the sources is not read.":
         "Es gilt die angegebene Zahl der Ereignisse pro Jahr; ein Feld frequency der Ausbruchgebiete wird nicht gelesen.",

@@ -25,9 +25,7 @@ std::vector<std::string> notes_of_run(const std::filesystem::path& folder, const
 
 /// One line that energies rest on c (model.deformation_coefficient), and which way is safe; nothing if c is low.
 /// docs/barrier.md, "The value of c".
-///
-/// @param of_profile  the run is of `talus profile`, which takes c from its file alone
-std::optional<std::string> coefficient_note(double c, bool of_profile = false);
+std::optional<std::string> coefficient_note(double c);
 
 /// "2 barriers stood in the run and caught 3335 blocks"; "blocks and pieces" if blocks broke.
 /// @param caught  their number as text

@@ -25,6 +25,7 @@ struct SourceFeature {
   Range release_height{1.0, 1.0};        ///< above the terrain [m]
   Vec3 velocity = Vec3::Zero();          ///< at the release [m/s]
   std::int64_t id = -1;                  ///< number in its file (FID); -1: of no file
+  bool has_area = true;                  ///< drawn as polygons alone: its cells are an area of rock
 };
 
 /// One place of release: a cell of the grid, or a point of its own.

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "support/scenarios.hpp"
+#include "talus/simulate/plan/plan.hpp"
+#include "talus/simulate/scenario/frequency.hpp"
 
 namespace talus {
 namespace {
@@ -29,8 +31,37 @@ TEST(AnnualRock, IsEventsTimesTheVolumeOfASphere) {
   EXPECT_NEAR(rock.volume, 3.0 * 4.0 / 3.0 * kPi, 1e-9);
   EXPECT_NEAR(rock.area, 80.0, 1e-3);
   EXPECT_NEAR(rock.retreat(), kPi / 20.0, 1e-5);
-  s.sources[3].point = true;
+}
+
+/// The rock of two of three features is compared with their cells: one is of points, which have no area. A cell of two
+/// features counts once.
+TEST(AnnualRock, IsComparedWithTheCellsOfPolygonsEachOnce) {
+  Scenario s = cliff();
+  s.features.assign(3, {.frequency = 1.0, .diameter = {2.0, 2.0}});
+  for (int i = 0; i < 10; ++i) s.sources.push_back({1, 5.0 + 2.0 * i, 7.0, false});
+  s.sources.push_back({2, 7.0, 7.0, true});
+  const AnnualRock rock = annual_rock(s).value();
+  EXPECT_NEAR(rock.volume, 3.0 * 4.0 / 3.0 * kPi, 1e-9);
+  EXPECT_NEAR(rock.from_area, 2.0 * 4.0 / 3.0 * kPi, 1e-9);
+  EXPECT_NEAR(rock.area, 80.0, 1e-3);
+  for (SourceFeature& feature : s.features) feature.has_area = false;  // lines
   EXPECT_TRUE(std::isnan(annual_rock(s)->retreat()));
+}
+
+/// What the sampler draws has the mean that is reckoned with; 4000 blocks of five standard errors.
+TEST(AnnualRock, HasTheVolumesThatAreDrawn) {
+  Scenario s = cliff();
+  s.frequency.total = 1.0;
+  s.trajectories = 400;
+  s.blocks.classes = {{{0.5, 2.0}, 3.0}, {{1.0, 3.0}, 1.0}};
+  double sum = 0.0, squares = 0.0;
+  for (std::uint32_t source = 0; source < 10; ++source)
+    for (std::uint32_t block = 0; block < 400; ++block) {
+      const double volume = make_release(s, source, block).body.mass / s.blocks.density;
+      sum += volume, squares += volume * volume;
+    }
+  const double mean = sum / 4000.0, deviation = std::sqrt(squares / 4000.0 - mean * mean);
+  EXPECT_NEAR(annual_rock(s)->volume, mean, 5.0 * deviation / std::sqrt(4000.0));
 }
 
 /// Diameters of 1 to 3 m, uniform: the mean of d^3 is (3^4 - 1) / (4 (3 - 1)) = 10 m3.
@@ -74,8 +105,10 @@ TEST(RetreatWarning, ComesWhereEventsPerHectareWereTypedAsPerSquareMetre) {
   EXPECT_NEAR(annual_rock(s)->retreat(), 0.25e-3, 1e-7);
   EXPECT_EQ(retreat_warning(s), "");
   s.frequency.per_area = 10.0;
-  EXPECT_THAT(retreat_warning(s), testing::StartsWith("frequencies: 400 events per year bring 200 m3 of rock from "
-                                                      "sources of 80 m2, which would go back by 2.5 m a year"));
+  EXPECT_THAT(retreat_warning(s),
+              testing::StartsWith("frequencies: 200 m3 of rock a year fall from polygons of 80 m2 of "
+                                  "surface, which would go back by 2.5 m a year; 2 mm a year is"));
+  EXPECT_TRUE(is_of_frequencies(retreat_warning(s)));
 }
 
 }  // namespace
