@@ -551,7 +551,7 @@ class Faults(OnASlope):
         self.write("p.toml", 'profile = "p.csv"\n[sources]\nx = 20\n')
         self.fails_with("no block diameter")
         self.scenario("x = 20", head='profile = "p.csv"\ndem = "dem.tif"\n')
-        self.fails_with("more than one", "columns x, z")
+        self.fails_with("dem: is given beside", "must be one of the two")
 
     def test_frequencies(self):
         """A profile has none: results would be as if they were not given (docs/profile.md)."""

@@ -436,5 +436,30 @@ TEST(SettledModel, IsTheTrueOneOnAverageAndLeavesNoFalseAlarm) {
   EXPECT_GT(alarms_before, alarms);
 }
 
+/// An effect that made the data is still found where the ground has settled, and the ground that goes with it counts
+/// from the fit.
+TEST(SettledModel, LeavesAnEffectToBeFound) {
+  Campaign c = slope_campaign(60);
+  const Model model = model_of_preset(c, "upper-talus-3d");
+  Model truth = model;
+  truth.effects.block_mass.roughness = 0.8;
+  truth.effects.block_mass.reference_diameter = 0.8;
+  measure(c, truth, 11);
+  const auto list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
+  const auto free = ground_of(c, model);
+  const std::vector<bool> rows(c.blocks.size(), true);
+  const Eigen::VectorXd z = Eigen::VectorXd::Zero(2);
+  const auto runs = observe(c, model, kOfBase);
+  const TestedModel fitted{model, free, z, runs};
+  const auto simulated = [&](const Model& moved) { return observe(c, moved, kOfBase); };
+  const SettledTest settled = settled_test(c, fitted, list, rows, quick(), simulated);
+  EXPECT_EQ(settled.test.effects.front().effect, "block-mass");
+  EXPECT_LT(settled.test.p_value, 0.01);
+  EXPECT_LE(settled.model.statistic, settled.model.statistic_of_fit);
+  const ScoreTest there = score_test(c, settled.model.tested(free), list, rows, quick());
+  const Eigen::VectorXd moved = settled.test.effects.front().best.ground - there.effects.front().best.ground;
+  EXPECT_NEAR((moved - settled.model.z).norm(), 0.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace talus
