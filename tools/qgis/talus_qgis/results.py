@@ -90,11 +90,12 @@ def files_of(folder, begin):
 
 
 def layers_of(folder, file, names):
-    """Layers of one file, as rows of `files_of`, the top first and the last hidden; none where they have no coordinate system
-    (a profile of x and z)."""
+    """Layers of a profile, as rows of `files_of`, the top first and the last hidden; none of a profile of x and z, which has
+    no place on the map."""
+    with open(os.path.join(folder, "run.json"), encoding="utf-8") as record:
+        if not any(read["role"] == "line" for read in json.load(record)["inputs"]):
+            return []
     uri = os.path.join(folder, file) + "|layername="
-    if not QgsVectorLayer(uri + names[0], "", "ogr").crs().isValid():
-        return []
     return [(uri + name, title_of(name), file, rank, name != names[-1]) for rank, name in enumerate(names)]
 
 
