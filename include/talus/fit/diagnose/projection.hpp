@@ -20,8 +20,8 @@ std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Eigen:
                                    const DiagnosisRules& rules = {});
 
 /// The linear map from scores to the effective score of one place: without the part that the free parameters of the
-/// base explain, by a regression on their scores. The prior of the base is centred at its fit: a ground that its prior
-/// held back is free to go on, and what is left of it is hardly taken for an effect.
+/// base explain, by a regression on their scores. The prior of the base is centred where the base is: a ground that its
+/// prior held back is free to go on.
 class Projection {
  public:
   /// @param covariance  of the scores of one data set under the model; directions x directions
