@@ -229,7 +229,10 @@ Markup settling_text(const Settling& settling) {
             with_digits(settling.statistic, 2) + ", at the fit " + with_digits(settling.statistic_of_fit, 2);
   else
     html += "at the fit: the score statistic of its numbers is " + with_digits(settling.statistic, 2);
-  return html + " (in a right model " + std::to_string(settling.parameters) + " on average).</p>\n";
+  html += " (in a right model " + std::to_string(settling.parameters) + " on average).";
+  if (settling.statistic > 2.0 * static_cast<double>(settling.parameters))
+    html += " <b>They did not settle: these p may be too small.</b>"_html;
+  return html + "</p>\n";
 }
 
 /// The families that are significant, and those that could not name anything.
