@@ -169,6 +169,20 @@ TEST(DiagnosisPage, ASignificantFamilyIsNoNoise) {
   EXPECT_TRUE(says(record_of(0.3, 0.01), something));
 }
 
+TEST(DiagnosisPage, SaysWhereTheFittedNumbersDidNotSettle) {
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  const std::string words = "They did not settle: these p may be too small";
+  EXPECT_FALSE(says(record, "Place and instrument were tested"));
+  record.diagnosis.rounds.front().settling = {4, 30.0, 6.2, 1.37};
+  EXPECT_TRUE(says(record,
+                   "up to 1.4 standard deviations of the prior from the fit: their score statistic is 6.2, at the "
+                   "fit 30 (in a right model 4 on average)"));
+  EXPECT_FALSE(says(record, words));
+  record.diagnosis.rounds.front().settling = {4, 30.0, 30.0, 0.0};
+  EXPECT_TRUE(says(record, words));
+  EXPECT_NE(diagnosis_json(record).find("\"farthest_move_sd\": 0.0"), std::string::npos);
+}
+
 /// Quick folds leave a block out of the fits, but the effect was chosen with it.
 TEST(DiagnosisPage, SaysWhatTheUnseenRowsHaveTakenPartIn) {
   const std::string not_of_choice = "On blocks left out of the fits, but not of the choice of the effect, the error is";
