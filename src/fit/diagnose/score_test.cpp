@@ -114,8 +114,9 @@ struct OwnScores {
   double statistic = 0.0;  ///< s' I^-1 s
 };
 
-OwnScores own_scores(const Campaign& campaign, const TestedModel& at, const std::vector<bool>& rows,
-                     const Observer& observed, const DiagnosisRules& rules) {
+/// @param moved  from the fit, at which the prior is centred [z]
+OwnScores own_scores(const Campaign& campaign, const TestedModel& at, const VectorXd& moved,
+                     const std::vector<bool>& rows, const Observer& observed, const DiagnosisRules& rules) {
   const ResidualSpace space(campaign, at.runs, rules);
   Directions directions(campaign, space, at.runs, observed(at.model), rows);
   const VectorXd steps = directions.add_free(at, observed, rules);
@@ -124,8 +125,9 @@ OwnScores own_scores(const Campaign& campaign, const TestedModel& at, const std:
   directions.score_all(trials, measured);
   MatrixXd information = covariance_of(trials);
   information.diagonal().array() += step_prior(rules);
-  const VectorXd explained = information.ldlt().solve(measured);
-  return {steps.cwiseProduct(explained), measured.dot(explained)};
+  const Eigen::LDLT<MatrixXd> solver(information);
+  const VectorXd pull = step_prior(rules) * moved.cwiseQuotient(steps);
+  return {steps.cwiseProduct(solver.solve(measured - pull)), measured.dot(solver.solve(measured))};
 }
 
 }  // namespace
@@ -161,7 +163,7 @@ SettledModel settled_model(const Campaign& campaign, const TestedModel& fitted, 
   const DiagnosisRules& rules = options.rules;
   SettledModel here{fitted.model, fitted.z, fitted.runs}, best = here;
   for (int step = 0; fitted.z.size() > 0; ++step) {
-    const OwnScores own = own_scores(campaign, here.tested(fitted.free), rows, observed, rules);
+    const OwnScores own = own_scores(campaign, here.tested(fitted.free), here.z - fitted.z, rows, observed, rules);
     here.statistic = own.statistic;
     if (step == 0) here.statistic_of_fit = own.statistic;
     if (step == 0 || here.statistic < best.statistic) best = here;

@@ -44,9 +44,9 @@ struct DiagnosisRules {
   /// Newton steps of the base before the test, at most [-]: a ground at the bounds of its search, 2.5 sd from the
   /// start, gets to the start with them.
   int settling = 4;
-  /// Statistic of the base's own scores below which the base has settled, over the number of its parameters [-]: half
-  /// the mean of a right model.
-  double settled = 0.5;
+  /// Statistic of the base's own scores up to which the base has settled, over the number of its parameters [-]: the
+  /// mean of a right model.
+  double settled = 1.0;
   /// Longest of these steps, by the parameter that moves most [z]: the standard deviation of its prior.
   double longest_move = 1.0;
 
