@@ -58,8 +58,8 @@ int find_sources(const SourcesOptions& options) {
                             " deg; give a smaller one with --slope");
   out.commit();
   if (options.slope && *options.slope < kLikelyNoDegrees && !options.quiet)
-    say("warning", "--slope = " + talus::text_of(*options.slope) +
-                       ": is in degrees, and nearly every cell is steeper; for a slope of 45 degrees give --slope 45");
+    say("warning",
+        "--slope = " + talus::text_of(*options.slope) + ": is in degrees; for a slope of 45 degrees give --slope 45");
   if (!options.quiet) summarise(found, grid, threshold, options.out);
   return 0;
 }

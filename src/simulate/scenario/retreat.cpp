@@ -12,8 +12,8 @@
 namespace talus {
 namespace {
 
-constexpr double kUnlikely =
-    50.0;  // times `kMuchRetreat`: the warning is for wrong units, which are 100 times off or more
+/// Multiple of `kMuchRetreat` above which the warning comes: it is for wrong units, which are 100 times off or more.
+constexpr double kUnlikely = 50.0;
 
 /// Mean volume of spheres whose diameters are uniform over a range [m^3]: the mean of d^3 is
 /// (a^3 + a^2 b + a b^2 + b^3) / 4.
@@ -92,8 +92,7 @@ std::string retreat_warning(const Scenario& scenario) {
          readable(rock->area) + " m2 of surface, which would go back by " + retreat_text(rock->retreat()) + "; " +
          retreat_text(kMuchRetreat) +
          " is much in the Alps: check the unit of the frequencies (events per year; per_area: per m2, not per "
-         "hectare) "
-         "and the diameters";
+         "hectare) and the diameters";
 }
 
 }  // namespace talus

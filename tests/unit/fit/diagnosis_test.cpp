@@ -353,13 +353,19 @@ TEST(DiagnoseOptions, TheRarestOfTheDataSetsIsSignificant) {
     }
 }
 
-TEST(ScoreTest, FindsAnEffectThatMadeTheData) {
+/// 60 blocks on a slope, measured as block-mass makes them go.
+Campaign campaign_of_block_mass() {
   Campaign c = slope_campaign(60);
-  Model model = model_of_preset(c, "upper-talus-3d");
-  Model truth = model;
+  Model truth = model_of_preset(c, "upper-talus-3d");
   truth.effects.block_mass.roughness = 0.8;
   truth.effects.block_mass.reference_diameter = 0.8;
   measure(c, truth, 11);
+  return c;
+}
+
+TEST(ScoreTest, FindsAnEffectThatMadeTheData) {
+  const Campaign c = campaign_of_block_mass();
+  const Model model = model_of_preset(c, "upper-talus-3d");
   const auto list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
   const ScoreTest test = test_of(c, model, list);
   EXPECT_EQ(test.effects.front().effect, "block-mass");
@@ -439,12 +445,8 @@ TEST(SettledModel, IsTheTrueOneOnAverageAndLeavesNoFalseAlarm) {
 /// An effect that made the data is still found where the ground has settled, and the ground that goes with it counts
 /// from the fit.
 TEST(SettledModel, LeavesAnEffectToBeFound) {
-  Campaign c = slope_campaign(60);
+  const Campaign c = campaign_of_block_mass();
   const Model model = model_of_preset(c, "upper-talus-3d");
-  Model truth = model;
-  truth.effects.block_mass.roughness = 0.8;
-  truth.effects.block_mass.reference_diameter = 0.8;
-  measure(c, truth, 11);
   const auto list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
   const auto free = ground_of(c, model);
   const std::vector<bool> rows(c.blocks.size(), true);

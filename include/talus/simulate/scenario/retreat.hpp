@@ -6,7 +6,7 @@
 
 namespace talus {
 
-/// What falls from the sources in a year, by the frequencies of a scenario.
+/// Rock that falls from the sources in a year, by the frequencies of a scenario.
 struct AnnualRock {
   double events = 0.0;     ///< of all sources [1/year]
   double volume = 0.0;     ///< of their blocks at the release [m^3/year]
@@ -24,8 +24,8 @@ std::optional<AnnualRock> annual_rock(const Scenario& scenario);
 /// "0.013 mm a year", "2.6 m a year".
 std::string retreat_text(double metres_per_year);
 
-/// What is much: 1.9 mm a year was measured in a cirque of the Alps, which "ranks in the top range of reported values"
-/// (Hartmeyer et al. 2020, Earth Surf. Dynam. 8, 753-768) [m/year].
+/// A high rate of retreat [m/year]: 1.9 mm a year, measured in the Hohe Tauern, "ranks in the top range of reported
+/// values" (Hartmeyer et al. 2020, Earth Surf. Dynam. 8, 753-768).
 inline constexpr double kMuchRetreat = 2e-3;
 
 /// How the warning below begins, in run.json, too.

@@ -48,7 +48,7 @@ TEST(AnnualRock, IsComparedWithTheCellsOfPolygonsEachOnce) {
   EXPECT_TRUE(std::isnan(annual_rock(s)->retreat()));
 }
 
-/// What the sampler draws has the mean that is reckoned with; 4000 blocks of five standard errors.
+/// The mean volume of 4000 drawn blocks is the expected one, within five standard errors.
 TEST(AnnualRock, HasTheVolumesThatAreDrawn) {
   Scenario s = cliff();
   s.frequency.total = 1.0;
