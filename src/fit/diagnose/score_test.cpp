@@ -162,20 +162,23 @@ SettledModel settled_model(const Campaign& campaign, const TestedModel& fitted, 
   const Observer observed = observer_of(campaign, rows, options);
   const DiagnosisRules& rules = options.rules;
   SettledModel here{fitted.model, fitted.z, fitted.runs}, best = here;
+  VectorXd move;  // from the best place
   for (int step = 0; fitted.z.size() > 0; ++step) {
     const OwnScores own = own_scores(campaign, here.tested(fitted.free), here.z - fitted.z, rows, observed, rules);
     here.statistic = own.statistic;
     if (step == 0) here.statistic_of_fit = own.statistic;
-    if (step == 0 || here.statistic < best.statistic) best = here;
-    if (step == rules.settling || here.statistic < rules.settled * static_cast<double>(here.z.size())) break;
-    const double longest = own.move.cwiseAbs().maxCoeff();
-    const VectorXd from = here.z;
-    here.z += own.move * std::min(1.0, rules.longest_move / longest);
+    if (step == 0 || here.statistic < best.statistic) {
+      best = here;
+      move = own.move * std::min(1.0, rules.longest_move / own.move.cwiseAbs().maxCoeff());
+    } else {
+      move *= 0.5;  // too far: the signatures are those of small changes
+    }
+    if (step == rules.settling || best.statistic < rules.settled * static_cast<double>(here.z.size())) break;
     for (Index i = 0; i < here.z.size(); ++i) {
       const Parameter& p = fitted.free[static_cast<std::size_t>(i)];
-      here.z[i] = std::clamp(here.z[i], p.z(p.lower), p.z(p.upper));
+      here.z[i] = std::clamp(best.z[i] + move[i], p.z(p.lower), p.z(p.upper));
     }
-    if (here.z == from) break;
+    if (here.z == best.z) break;
     here.model = model_at(fitted.model, fitted.free, here.z);
     here.runs = simulated(here.model);
   }
