@@ -89,6 +89,7 @@ def compile_file(file, copy, commands):
     target = source.with_suffix(".o")
     if target.exists():
         return kept, target
+    kept.append("-O1")  # quick to build rather than to run
     result = subprocess.run([*kept, "-o", str(target), "-c", str(source)], cwd=entry["directory"], capture_output=True, text=True)
     if result.returncode != 0:
         wrong(f"{file} with the patch does not compile:\n{result.stderr}")
