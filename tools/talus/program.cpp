@@ -154,19 +154,33 @@ void take_texts_as_meant(CLI::App& app) {
     }
 }
 
-/// Throws InputError for a list with an empty item (30,,300), which CLI11 leaves out unnoticed.
-void refuse_empty_items(const CLI::App& command) {
+/// The lists that are given for an option with a delimiter, in order.
+std::vector<std::string> lists_of(const CLI::Option& option) {
+  const std::string name = "--" + option.get_lnames().front();
+  std::vector<std::string> lists;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (words[i] == name && i + 1 < words.size())
+      lists.push_back(words[++i]);
+    else if (words[i].starts_with(name + "="))
+      lists.push_back(words[i].substr(name.size() + 1));
+  }
+  return lists;
+}
+
+/// Throws InputError for a list with an empty item (30,,300), which CLI11 leaves out unnoticed, and for a second list
+/// of an option, which it appends to the first.
+void refuse_odd_lists(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_delimiter() == '\0') continue;
     const std::string comma(1, option->get_delimiter()), name = "--" + option->get_lnames().front();
-    for (std::size_t i = 1; i < words.size(); ++i) {
-      const bool alone = words[i] == name && i + 1 < words.size();
-      if (!alone && !words[i].starts_with(name + "=")) continue;
-      const std::string list = comma + (alone ? words[i + 1] : words[i].substr(name.size() + 1)) + comma;
-      if (list.find(comma + comma) != std::string::npos)
-        throw talus::InputError(name + ": '" + list.substr(1, list.size() - 2) + "' has an empty item; see talus " +
-                                command.get_name() + " --help");
-    }
+    const std::string help = "; see talus " + command.get_name() + " --help";
+    const std::vector<std::string> lists = lists_of(*option);
+    for (const std::string& list : lists)
+      if ((comma + list + comma).find(comma + comma) != std::string::npos)
+        throw talus::InputError(name + ": '" + list + "' has an empty item" + help);
+    if (lists.size() > 1)
+      throw talus::InputError(name + " is given " + std::to_string(lists.size()) + " times: must be once, as " + name +
+                              " " + lists[0] + comma + lists[1] + help);
   }
 }
 
@@ -225,7 +239,7 @@ Action understood(int argc, char** argv, const std::vector<AddCommand>& commands
     }
     throw talus::InputError(explain(app, error));
   }
-  refuse_empty_items(*app.get_subcommands().front());
+  refuse_odd_lists(*app.get_subcommands().front());
   refuse_empty_values(*app.get_subcommands().front());
   return action;
 }
