@@ -15,11 +15,28 @@ double within_bounds(const Parameter& parameter, double z) {
   return value > parameter.lower && value < parameter.upper ? value : kNotGiven;
 }
 
-DetectionLimit limit_of(const std::string& effect, const Candidate& candidate, const Sharpest& sharpest,
+DetectionLimit limit_of(const std::string& effect, const Candidate& candidate, const Precision& precision,
                         const DiagnosisRules& rules) {
-  const Parameter& parameter = candidate.parameters[sharpest.parameter];
-  const double z = rules.shown * rules.noticed * sharpest.standard_error;
-  return {effect, candidate.where, parameter.key, parameter.unit, parameter.value(0.0), within_bounds(parameter, z)};
+  const Parameter& parameter = candidate.parameters[precision.parameter];
+  const double z = rules.shown * rules.noticed * precision.standard_error;
+  return {.effect = effect,
+          .where = candidate.where,
+          .key = parameter.key,
+          .unit = parameter.unit,
+          .off = parameter.value(0.0),
+          .amount = within_bounds(parameter, z)};
+}
+
+/// The amounts of one parameter at all places of an effect.
+std::vector<DetectionLimit::Place> amounts_by_place(const EffectVerdict& effect, const std::string& key,
+                                                    std::span<const Candidate> candidates,
+                                                    const DiagnosisRules& rules) {
+  std::vector<DetectionLimit::Place> places;
+  for (const Precision& precision : effect.places) {
+    const DetectionLimit limit = limit_of(effect.effect, candidates[precision.members.front()], precision, rules);
+    if (limit.key == key) places.push_back({limit.where, limit.amount});
+  }
+  return places;
 }
 
 }  // namespace
@@ -49,7 +66,9 @@ std::vector<DetectionLimit> detection_limits(const Campaign& campaign, const Axi
     const auto best = std::ranges::min_element(found, {}, [](const auto& of_parameter) {
       return std::pair(std::isnan(of_parameter.second.amount), of_parameter.first);
     });
-    if (best != found.end()) limits.push_back(best->second);
+    if (best == found.end()) continue;
+    limits.push_back(best->second);
+    limits.back().places = amounts_by_place(effect, best->second.key, candidates, rules);
   }
   return limits;
 }
@@ -80,8 +99,11 @@ void compare_limits(std::vector<DetectionLimit>& limits, std::span<const Detecti
 
 void complete_limits(std::vector<DetectionLimit>& limits, std::span<const FamilyTest> families,
                      std::span<const std::string> found) {
-  for (DetectionLimit& limit : limits)
-    if (!can_be_named(families, limit.effect)) limit.amount = limit.with_further_speeds = kNotGiven;
+  for (DetectionLimit& limit : limits) {
+    if (can_be_named(families, limit.effect)) continue;
+    limit.amount = limit.with_further_speeds = kNotGiven;
+    for (DetectionLimit::Place& place : limit.places) place.amount = kNotGiven;
+  }
   for (const std::string& name : sought_names())
     if (std::ranges::find(found, name) == found.end() &&
         std::ranges::find(limits, name, &DetectionLimit::effect) == limits.end())

@@ -73,13 +73,15 @@ void rank(const Verdict& verdict, EffectVerdict& effect) {
   }
 }
 
-/// Keeps a place of an effect for each parameter that is measured better there than at those before.
+/// Keeps how well a place of an effect measures its parameters, and which of the places measures each best.
 void sharpen(const Eigen::VectorXd& errors, const std::vector<std::size_t>& members, const Candidate& candidate,
              EffectVerdict& effect) {
   for (Index p = 0; p < errors.size(); ++p) {
     const auto parameter = static_cast<std::size_t>(p);
-    Sharpest& sharpest = effect.sharpest[candidate.parameters[parameter].key];
-    if (errors[p] < sharpest.standard_error) sharpest = {members, parameter, errors[p]};
+    const Precision here{members, parameter, errors[p]};
+    Precision& sharpest = effect.sharpest[candidate.parameters[parameter].key];
+    if (here.standard_error < sharpest.standard_error) sharpest = here;
+    if (members.size() == 1) effect.places.push_back(here);
   }
 }
 
@@ -208,7 +210,7 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
     auto effect = std::find_if(test.effects.begin(), test.effects.end(),
                                [&](const EffectVerdict& e) { return e.effect == name; });
     if (effect == test.effects.end())
-      effect = test.effects.insert(effect, {name, verdict, {}, 1.0, {}, {}});
+      effect = test.effects.insert(effect, {name, verdict, {}, 1.0, {}, {}, {}});
     else
       rank(verdict, *effect);
     sharpen(projections.back().standard_errors(), place.members, candidates[place.members.front()], *effect);

@@ -19,12 +19,15 @@ std::string amount_text(const DetectionLimit& limit, double amount, const char* 
 Json limits_json(std::span<const DetectionLimit> limits, bool further) {
   Json list = Json::array();
   for (const DetectionLimit& limit : limits) {
+    Json places = Json::array();
+    for (const auto& [where, amount] : limit.places) places.push_back({{"where", where}, {"amount", json_of(amount)}});
     list.push_back({{"effect", limit.effect},
                     {"where", limit.where},
                     {"parameter", limit.key},
                     {"amount", json_of(limit.amount)},
                     {"unit", limit.unit},
-                    {"off", json_of(limit.off)}});
+                    {"off", json_of(limit.off)},
+                    {"places", places}});
     if (further) list.back()["amount_with_further_speeds"] = json_of(limit.with_further_speeds);
   }
   return list;

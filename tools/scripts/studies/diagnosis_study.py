@@ -8,8 +8,8 @@
 Each campaign has a slope of its own (length, steepness, a gully, bumps), three zones, blocks of many sizes and shapes, three
 screens and four days. One effect of a known size acts (or none). One simulated trial per block, with errors of measurement,
 serves as the measurement. A third of the blocks is held out. Prints the confusion matrix, the false alarms and the power by
-magnitude, how many effects were not named though they act above the detection limit that the diagnosis gives (of the place
-where the effect would be strongest), and the error on the held-out rows of three models: the ground alone, the model that was
+magnitude, how many effects were not named though they act above the detection limit that the diagnosis gives for the place
+where they act, and the error on the held-out rows of three models: the ground alone, the model that was
 found, the model that made the data. Campaigns without an effect are of the kinds of --null in turn: `plain`; `scatter`, whose
 stops, speeds, jumps and spins scatter 1.6 times as much in variance as trials of the model; `grouped`, six blocks a group,
 which share an error of the release of 6 m and a ground of their own (each parameter 15 % up or down); `outside`, a ground far
@@ -58,7 +58,8 @@ EFFECTS = {
     "fragmentation": {"threshold": (60.0, "/"), "largest": (0.7, "")},
 }
 
-
+# Where they act, as the diagnosis calls it; the others everywhere.
+PLACES = {name: "zone meadow" for name, keys in EFFECTS.items() if "zones" in keys} | {"wet-ground": "day 2"}
 GROUND_KEYS = ("theta_scale", "psi_scale", "En50", "Et50")
 FAMILIES = ("block property", "place", "day", "instrument", "dispersion")
 NULLS = ("plain", "scatter", "grouped", "outside")
@@ -230,13 +231,14 @@ def diagnose(o, folder):
 
 
 def above_limit(found, effect, magnitude):
-    """Whether an effect that was not named acts more strongly than the diagnosis's own detection limit."""
+    """Whether an effect that was not named acts more strongly than the diagnosis's own detection limit where it acts."""
     for limit in found["detection_limits"]:
-        if limit["effect"] != effect or limit["amount"] is None:
+        if limit["effect"] != effect:
             continue
+        amount = next((p["amount"] for p in limit["places"] if p["where"] == PLACES.get(effect)), limit["amount"])
         key = limit["parameter"].split(".")[-1]
         size = EFFECTS[effect][key.removeprefix("1/")][0]
-        return (magnitude / size if key.startswith("1/") else magnitude * size) >= limit["amount"]
+        return amount is not None and (magnitude / size if key.startswith("1/") else magnitude * size) >= amount
     return False
 
 

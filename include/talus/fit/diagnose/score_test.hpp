@@ -7,8 +7,8 @@
 
 namespace talus {
 
-/// The place of an effect at which a campaign measures one of its parameters best.
-struct Sharpest {
+/// How well a campaign measures a parameter of an effect at one of its places.
+struct Precision {
   std::vector<std::size_t> members;                                 ///< indices into the candidates
   std::size_t parameter = 0;                                        ///< of the candidate
   double standard_error = std::numeric_limits<double>::infinity();  ///< in units of what one would notice
@@ -18,10 +18,11 @@ struct Sharpest {
 struct EffectVerdict {
   std::string effect;
   Verdict best;
-  Verdict second;                                 ///< the next best place; without members where there is no other
-  double p_value = 1.0;                           ///< corrected for the number of its places, from simulated data sets
-  std::vector<double> drawn;                      ///< by simulated data set: the smallest p-value over its places
-  std::map<std::string, Sharpest> sharpest = {};  ///< by key of the parameter; follows from the model alone
+  Verdict second;                                  ///< the next best place; without members where there is no other
+  double p_value = 1.0;                            ///< corrected for the number of its places, from simulated data sets
+  std::vector<double> drawn;                       ///< by simulated data set: the smallest p-value over its places
+  std::map<std::string, Precision> sharpest = {};  ///< by key of the parameter: of the place that measures it best
+  std::vector<Precision> places = {};              ///< of each candidate's own place; both follow from the model alone
 };
 
 struct ScoreTest {

@@ -49,6 +49,25 @@ TEST(DetectionLimits, AreOfAParameterThatCanShowTheEffect) {
   EXPECT_DOUBLE_EQ(limits[0].amount, 0.99);
 }
 
+/// Two places of which the second measures the drag best, and one of them joined, which is no place of its own.
+TEST(DetectionLimits, AreGivenForEachPlace) {
+  std::vector<Candidate> candidates{drag(), drag()};
+  candidates[1].where = "zone meadow";
+  ScoreTest test = test_with_error(1.0);
+  test.effects[0].sharpest = {{"drag", {{1}, 0, 0.5}}};
+  test.effects[0].places = {{{0}, 0, 1.0}, {{1}, 0, 0.5}};
+  std::vector<DetectionLimit> limits = detection_limits(Campaign{}, Axis{}, test, candidates);
+  ASSERT_EQ(limits.size(), 1U);
+  EXPECT_DOUBLE_EQ(limits[0].amount, 0.45);
+  ASSERT_EQ(limits[0].places.size(), 2U);
+  EXPECT_EQ(limits[0].places[0].where, "everywhere");
+  EXPECT_DOUBLE_EQ(limits[0].places[0].amount, 0.9);
+  EXPECT_EQ(limits[0].places[1].where, "zone meadow");
+  EXPECT_DOUBLE_EQ(limits[0].places[1].amount, 0.45);
+  complete_limits(limits, {}, {});  // no family that could name it
+  EXPECT_TRUE(std::isnan(limits[0].places[1].amount));
+}
+
 TEST(DetectionLimits, OfFurtherMeasurementsStandBesideTheirOwnEffect) {
   std::vector<DetectionLimit> limits{{.effect = "air-drag", .key = "drag"}, {.effect = "block-mass", .key = "m"}};
   const std::vector<DetectionLimit> further{{.effect = "block-mass", .key = "m", .amount = 0.3},
@@ -197,6 +216,8 @@ TEST(FurtherScreens, RaiseNoLimit) {
   for (const DetectionLimit& limit : limits) {
     if (std::isnan(limit.amount)) continue;
     ++finite;
+    for (const auto& [where, amount] : limit.places)
+      if (!std::isnan(amount)) EXPECT_LE(std::abs(limit.amount - limit.off), std::abs(amount - limit.off)) << where;
     EXPECT_LE(std::abs(limit.with_further_speeds - limit.off), 1.05 * std::abs(limit.amount - limit.off))
         << limit.effect << ' ' << limit.key;
   }
