@@ -48,8 +48,13 @@ std::string text_of(double value) {
   return {text.data(), end};
 }
 
-std::string with_digits(double value, int digits) {
+std::string significant(double value, int digits) {
   return printed(value, std::chars_format::general, digits);
+}
+
+std::string with_digits(double value, int digits) {
+  const bool whole = std::abs(value) >= std::pow(10.0, digits) - 0.5 && std::abs(value) < 1e15;
+  return whole ? with_decimals(value, 0) : significant(value, digits);
 }
 
 double number_in(std::string_view text) {
@@ -60,7 +65,8 @@ double number_in(std::string_view text) {
 
 std::string percent(double share, int digits) {
   if (share > 0.0 && share < kSmallestShare) return "below " + with_digits(100.0 * kSmallestShare, digits) + " %";
-  return with_digits(100.0 * share, digits) + " %";
+  if (share >= 0.99995 && share < 1.0) return "above 99.99 %";
+  return with_digits(100.0 * share, share < 0.995 ? digits : std::max(digits, 4)) + " %";
 }
 
 std::string with_decimals(double value, int decimals) {
@@ -112,7 +118,7 @@ std::string csv_field(const std::string& text) {
 }
 
 std::string csv_field(double value) {
-  return std::isfinite(value) ? with_digits(value, 6) : "";
+  return std::isfinite(value) ? significant(value, 6) : "";
 }
 
 std::string joined(std::span<const std::string> words) {

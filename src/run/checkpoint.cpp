@@ -26,7 +26,6 @@ using io::plan_checksum;
 using io::replace_text;
 using Json = nlohmann::ordered_json;
 constexpr int kFormat = 9;
-constexpr std::int64_t kMostRounds = 10'000;  // that talus run takes
 constexpr std::int64_t kLargest32 = 0xFFFF'FFFF;
 
 /// "tally-3.bin"; for a process of rank 1 "tally-3-1.bin".

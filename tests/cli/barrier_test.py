@@ -466,7 +466,7 @@ class Weights(Case):
         total = self.report("--frequency", self.write("w.toml", "[frequency]\ntotal = 1.0\n"))
         for key in ("design", "crossings_per_year", "stretches"):
             self.assertEqual(total[key], of_run[key])
-        kept = "the classes of blocks keep their shares of the events: 75, 25 %"
+        kept = "the classes of blocks keep their shares of the events: 75 %, 25 %"
         self.assertEqual([kept in report["notes"] for report in (of_run, total)], [False, True])
 
     def test_without_frequencies(self):

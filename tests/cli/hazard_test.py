@@ -292,7 +292,7 @@ class Hazard(OneThread, KeptRuns, Case):
                 {name: float(house[name]) for name in ("frequency", "frequency_lower", "frequency_upper", "frequency_30", "entry_30")})
 
     def test_classes_keep_their_shares_of_the_events_under_another_weighting(self):  # the shares drawn counted instead
-        kept = "the classes of blocks keep their shares of the events: 90, 10 %"
+        kept = "the classes of blocks keep their shares of the events: 90 %, 10 %"
         for out, more in (("plan", ""), ("true", "[frequency]\nby_true_area = true\n")):
             self.classes_run(out, more)
             said, once, house = self.hazard_by(out)

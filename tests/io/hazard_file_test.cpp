@@ -149,7 +149,7 @@ TEST_F(HazardFile, AnotherWeightingKeepsTheClassesOfAPowerLaw) {
   const GivenFrequencies given = apply_weighting(write_text("w.toml", "[frequency]\ntotal = 6\n"), run.scenario);
   ASSERT_EQ(given.class_shares.size(), 2U);
   EXPECT_NEAR(given.class_shares[0], 2.0 / 3.0, 1e-12);
-  EXPECT_EQ(class_shares_text(given), "the classes of blocks keep their shares of the events: 67, 33 %");
+  EXPECT_EQ(class_shares_text(given), "the classes of blocks keep their shares of the events: 67 %, 33 %");
   EXPECT_NEAR(AnnualWeights::of(run.scenario)->scale().total, 6.0, 1e-9);
   const GivenFrequencies law =
       apply_weighting(write_text("w.toml", "[frequency]\npower_law = { A = 0.2, b = 0.5 }\n"), again);

@@ -144,17 +144,16 @@ void print_terrain(const LoadedScenario& loaded, bool maps_pits) {
                       count_text(static_cast<std::uint64_t>(grid.rows)) + " cells of " +
                       talus::with_digits(geo.cell_x, 4) + " m x " + talus::with_digits(geo.cell_y, 4) + " m" +
                       (missing > 0 ? ", " + count_text(missing) + " of them without a height" : ""));
-  line("extent", talus::with_decimals(geo.west, 3) + " to " +
-                     talus::with_decimals(geo.west + grid.columns * geo.cell_x, 3) + " east, " +
-                     talus::with_decimals(talus::io::MapPlace(geo, grid).south, 3) + " to " +
+  line("extent", talus::with_decimals(geo.west, 3) + " to " + talus::with_decimals(geo.west + grid.width(), 3) +
+                     " east, " + talus::with_decimals(talus::io::MapPlace(geo, grid).south, 3) + " to " +
                      talus::with_decimals(geo.north, 3) + " north");
   line("system", talus::io::crs_name(geo.crs_wkt));
   const talus::DemFigures figures = talus::dem_figures(heights);
   if (figures.cells > 0)
     line("slopes",
          "median " + talus::with_digits(talus::degrees(figures.median_slope), 3) + " deg; " +
-             talus::with_digits(100.0 * figures.steep_share, 2) + " % of the cells above 80 deg, " +
-             talus::with_digits(100.0 * figures.flat_share, 2) + " % flat" +
+             talus::percent(figures.steep_share, 2) + " of the cells above 80 deg, " +
+             talus::percent(figures.flat_share, 2) + " flat" +
              (figures.step > 0.0 ? "; all heights are multiples of " + talus::text_of(figures.step) + " m" : ""));
   const talus::PitSummary pits = talus::summary_of_pits(heights);
   if (pits.count > 0)
@@ -324,7 +323,7 @@ void add_check(CLI::App& app, Action& action) {
   command->footer(
       "Examples:\n  talus check scenario.toml\n  talus check scenario.toml --pits pits.gpkg\n\nLists every fault of "
       "the settings and of the layers. Traces for at "
-      "most two seconds to estimate the "
-      "time.");
+      "most " +
+      talus::text_of(kSampleSeconds) + " s to estimate the time.");
   command->callback([&action, options] { action = [options] { return check(*options); }; });
 }

@@ -22,12 +22,16 @@
 #include "talus/io/results/run_record.hpp"
 #include "talus/products/hazard_maps.hpp"
 #include "talus/run/write_maps.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/simulate/simulate.hpp"
 #include "talus/simulate/tally_of.hpp"
 
 namespace fs = std::filesystem;
 
 namespace {
+
+/// Of --width.
+constexpr talus::Bounds kWidth{"width", "m", "of the object", 0.0, 1000.0, talus::Bounds::AboveMin};
 
 struct HazardOptions {
   std::string folder, matrix, objects, frequency, width_field, name_field;
@@ -301,13 +305,12 @@ void add_hazard(CLI::App& app, Action& action) {
       "--width", options->width,
       "m: the maps are for an object of this width (and the diameter of the block) at each place, else for the "
       "cell; with --objects also the width of lines without a field width");
-  with(width, number_of({"width", "m", "of the object", 0.0, 1000.0, talus::Bounds::AboveMin}))
-      ->check([](const std::string& text) -> std::string {
-        char* end = nullptr;
-        const double value = std::strtod(text.c_str(), &end);
-        if (end != text.c_str() && *end == 0 && value > 0.0 && value <= 1000.0) return {};
-        return text + ": must be above 0 and at most 1000 m (width of the object; leave it out for the cell)";
-      });
+  with(width, number_of(kWidth))->check([](const std::string& text) -> std::string {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    if (end != text.c_str() && *end == 0 && !talus::fault_of(kWidth, value)) return {};
+    return text + ": must be above 0 and at most 1000 m (width of the object; leave it out for the cell)";
+  });
   command->add_flag("--curves", options->curves,
                     "hazard_curves.tif: how often each energy is exceeded, a band per energy (0, 1, 2, 4, ... kJ and "
                     "the thresholds; with --width the thresholds)");

@@ -43,7 +43,9 @@ class Readers {
       : writer_(folder, profile),
         bins_(profile.loaded.scenario.surface.grid().columns - 1, profile.step, profile.bin),
         runout_(profile.bin),
-        every_(std::max(1U, profile.loaded.scenario.output.paths / kDrawn)) {
+        every_(std::max<std::uint64_t>(
+            1, std::min<std::uint64_t>(profile.loaded.scenario.output.paths, profile.loaded.scenario.released()) /
+                   kDrawn)) {
     const talus::Scenario& scenario = profile.loaded.scenario;
     if (!scenario.screens.empty()) crossings_.emplace(folder / "screens.csv", scenario, profile.loaded.geo);
   }
@@ -83,7 +85,7 @@ class Readers {
   std::optional<talus::io::CrossingsWriter> crossings_;
   talus::ProfileBins bins_;
   talus::RunoutCounter runout_;
-  std::uint32_t every_, seen_ = 0;
+  std::uint64_t every_, seen_ = 0;  // paths are drawn, and were recorded
   std::vector<talus::RecordedPath> drawn_;
 };
 

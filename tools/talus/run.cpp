@@ -114,7 +114,7 @@ void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
        with_unit("s", request.checkpoint));
   with(command
            ->add_option("--rounds", request.rounds.count, "number of times that the scenario's trajectories are traced")
-           ->check(CLI::Range(1, 10'000)),
+           ->check(CLI::Range(1, static_cast<int>(talus::kMostRounds))),
        default_of(request.rounds.count));
   CLI::Option* until =
       command->add_option("--until-error", request.rounds.until_error,
@@ -126,7 +126,7 @@ void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
           ->check(between(1e-9, 1.0)),
       default_of(request.rounds.above));
   with(command->add_option("--most-rounds", request.rounds.most, "largest number of rounds with --until-error (100)")
-           ->check(CLI::Range(1, 10'000))
+           ->check(CLI::Range(1, static_cast<int>(talus::kMostRounds)))
            ->needs(until),
        default_of(request.rounds.most));
   add_quiet(*command, options->quiet);

@@ -6,10 +6,12 @@
 
 namespace talus {
 
+inline constexpr std::uint32_t kMostRounds = 10'000;  ///< that a run may have
+
 /// Rounds of a run. Each round traces all trajectories of the scenario again, with new random numbers.
 struct Rounds {
   std::uint32_t count = 1;            ///< number of rounds, if no error is asked for
-  std::optional<double> until_error;  ///< add rounds until the relative half-width is at most this [-]
+  std::optional<double> until_error;  ///< add rounds until the relative half-width is below this [-]
   double above = 0.01;                ///< only cells with a larger impact probability are checked [-]
   std::uint32_t most = 100;           ///< largest number of rounds, even if the error is not reached
   bool several() const { return count > 1 || until_error.has_value(); }

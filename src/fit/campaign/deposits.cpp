@@ -80,9 +80,10 @@ MappedDeposits mapped_deposits(std::vector<DepositSource> sources, Raster<std::u
   for (const DepositSource& source : sources) out.share.push_back(sum += source.area);
   for (double& share : out.share) share /= sum;
   out.nearest = nearest_sources(sources_by_cell(region.grid, sources));
-  const std::uint8_t regions = *std::max_element(region.values.begin(), region.values.end());
-  for (std::uint8_t number = 0; number <= regions; ++number)
-    out.anywhere.push_back(number == 0 ? std::vector<Eigen::Vector2d>() : places_in(region, number));
+  const unsigned regions = *std::max_element(region.values.begin(), region.values.end());
+  out.anywhere.emplace_back();  // 0 is no region
+  for (unsigned number = 1; number <= regions; ++number)
+    out.anywhere.push_back(places_in(region, static_cast<std::uint8_t>(number)));
   out.sources = std::move(sources);
   out.region = std::move(region);
   return out;

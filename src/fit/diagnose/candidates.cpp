@@ -115,7 +115,7 @@ std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base
   add_biases(list, campaign);
   const Axis axis = axis_of(campaign, runs);
   const Grid& grid = campaign.surface.grid();
-  const double width = grid.columns * grid.cell_x + grid.rows * grid.cell_y, length = axis.to - axis.from;
+  const double width = grid.width() + grid.height(), length = axis.to - axis.from;
   for (int i = 0; i < rules.bands && base.grounds.size() <= kMostZones / 2; ++i)  // a band adds a copy of each
     list.push_back(
         band(campaign, axis, axis.from + length * i / rules.bands, axis.from + length * (i + 1) / rules.bands));

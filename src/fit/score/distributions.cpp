@@ -6,6 +6,7 @@
 #include "talus/base/sample.hpp"
 #include "talus/fit/campaign/deposits.hpp"
 #include "talus/fit/score/score.hpp"
+#include "talus/fit/score/tail.hpp"
 
 namespace talus {
 namespace {
@@ -41,10 +42,8 @@ void compare_runout(const Campaign& campaign, std::span<const BlockRuns> runs, c
   for (std::size_t b = 0; b < runs.size(); ++b) {
     const MeasuredBlock& block = campaign.blocks[b];
     if (!ask[b] || !block.stop) continue;
-    runout.measure(std::hypot(block.stop->x() - block.x, block.stop->y() - block.y));
-    for (std::uint32_t t = 0; t < runs[b].trials; ++t)
-      if (!std::isnan(runs[b].x[t]))
-        runout.simulated.push_back(std::hypot(runs[b].x[t] - block.x, runs[b].y[t] - block.y));
+    runout.measure(runout_of(campaign, block));
+    runout.simulate(runouts_of(campaign, block, runs[b]));
   }
   runout.add_to(out, "runout", "m");
 }

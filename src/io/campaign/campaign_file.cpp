@@ -13,6 +13,7 @@
 #include "io/scenario/surface_key.hpp"
 #include "io/scenario/table_reader.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/input_faults.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/input_access.hpp"
 #include "talus/io/gdal/lines.hpp"
@@ -72,7 +73,7 @@ class CampaignReader {
       faults_.push_back(spec_.zones.where + ": must come with [zone_names], such as 1 = \"talus\"");
     if (root.find("zones") == nullptr && !spec_.zone_codes.empty())
       faults_.push_back(path_ + ": [zone_names] must come with the raster of the zones: zones = \"zones.tif\"");
-    if (!faults_.empty()) throw InputError(faults_.front());
+    if (!faults_.empty()) throw InputFaults(faults_, faults_.size());
     return std::move(spec_);
   }
 

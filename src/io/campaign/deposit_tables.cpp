@@ -161,11 +161,8 @@ void keep_mapped(const DepositSpec& spec, const MappedDeposits& deposits, std::v
     throw InputError(spec.mapped.where + ": none of the " + std::to_string(all) + " blocks of " + spec.table.path +
                      " lies inside its polygons, five must: are they those inside which blocks were mapped?");
   if (outside.empty()) return;
-  const std::size_t shown = std::min<std::size_t>(outside.size(), 5);
-  std::string ids = joined({outside.begin(), outside.begin() + static_cast<std::ptrdiff_t>(shown)});
-  if (shown < outside.size()) ids += " and " + std::to_string(outside.size() - shown) + " more";
   warnings.push_back(spec.table.path + ": " + std::to_string(outside.size()) + " of " + std::to_string(all) +
-                     " blocks lie outside the mapped polygons and are left out: " + ids);
+                     " blocks lie outside the mapped polygons and are left out: " + listed(outside));
 }
 
 void require_blocks_for(const DepositSpec& spec, std::size_t blocks) {

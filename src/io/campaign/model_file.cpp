@@ -11,6 +11,7 @@
 #include "io/scenario/scenario_keys.hpp"
 #include "io/scenario/scenario_text.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/input_faults.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/simulate/scenario/presets.hpp"
@@ -147,7 +148,7 @@ Model read_model(const std::string& path, const Campaign& campaign, std::vector<
       faults.push_back(path + ": [ground.zones." + toml_key(zone.name) + "]: the campaign has no such zone" +
                        known_names(zone.name, campaign.zone_names));
   for (const auto& [name, effect] : spec.effects) check_places(name, effect, campaign, path, faults);
-  if (!faults.empty()) throw InputError(faults.front());
+  if (!faults.empty()) throw InputFaults(faults, faults.size());
   const SurfaceKind kind = campaign.surface.kind();
   if (warnings != nullptr) {
     warn_of_undescribed_zones(spec, campaign, path, *warnings);

@@ -27,7 +27,7 @@ bool alike(const std::string& a, const std::string& b) {
 }
 
 /// The first bytes of a name, without half a character at the end.
-std::string shortened(const std::string& name) {
+std::string first_bytes(const std::string& name) {
   std::size_t end = std::min(name.size(), kLongest);
   const auto continues = [&](std::size_t i) { return (static_cast<unsigned char>(name[i]) & 0xC0U) == 0x80U; };
   while (end > 0 && end < name.size() && continues(end)) --end;
@@ -38,7 +38,7 @@ std::string name_among(const std::string& id, std::span<const std::string> ids) 
   const std::string name = plain(id);
   const bool unique =
       std::ranges::none_of(ids, [&](const std::string& other) { return other != id && alike(plain(other), name); });
-  return unique && name.size() <= kLongest ? name : shortened(name) + "-" + sha256_of_bytes(id).substr(0, 8);
+  return unique && name.size() <= kLongest ? name : first_bytes(name) + "-" + sha256_of_bytes(id).substr(0, 8);
 }
 
 }  // namespace

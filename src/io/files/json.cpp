@@ -9,7 +9,7 @@
 namespace talus::io {
 
 double six_digits(double value) {
-  return number_in(with_digits(value, 6));
+  return number_in(significant(value, 6));
 }
 
 double six_decimals(double value) {

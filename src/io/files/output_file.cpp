@@ -52,7 +52,7 @@ void refuse_foreign(const fs::path& path) {
       foreign.push_back(name);
   if (!foreign.empty())
     throw InputError(path.string() + ": --overwrite replaces only what talus has written, and this file has other " +
-                     "layers: " + shown_names(foreign) + "; give a new name, or remove it yourself");
+                     "layers: " + listed(foreign) + "; give a new name, or remove it yourself");
   if (const auto edited = edited_layers(*file); !edited.empty())
     throw InputError(path.string() + ": was edited after talus had written it (" + joined(edited) +
                      "), and --overwrite would lose that; give a new name, or remove it yourself");

@@ -15,6 +15,7 @@
 #include "own_files.hpp"
 #include "posix_bytes.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
 
 namespace talus::io {
 
@@ -54,7 +55,7 @@ void refuse_foreign_files(const fs::path& folder) {
   const std::vector<std::string> foreign = foreign_in(folder);
   if (!foreign.empty())
     throw InputError(folder.string() + ": --overwrite replaces the files of the earlier result alone, and there are " +
-                     "others in this folder: " + shown_names(foreign) + "; move them, or give a new name");
+                     "others in this folder: " + listed(foreign) + "; move them, or give a new name");
 }
 
 void refuse_taken_name(const fs::path& folder, bool overwrite) {

@@ -161,11 +161,4 @@ std::vector<std::string> foreign_in(const fs::path& folder) {
   return foreign;
 }
 
-std::string shown_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 5;
-  const std::size_t shown = std::min(names.size(), kShown);
-  const std::string text = joined(std::vector<std::string>(names.begin(), names.begin() + std::ptrdiff_t(shown)));
-  return names.size() > shown ? text + " and " + std::to_string(names.size() - shown) + " more" : text;
-}
-
 }  // namespace talus::io

@@ -41,7 +41,4 @@ void remove_beside(const std::filesystem::path& file, const std::vector<std::str
 /// The files that a record of results lists in `files`, by their names alone.
 std::vector<std::string> files_of_record(const std::filesystem::path& record);
 
-/// "a.txt, photos/ and 3 more".
-std::string shown_names(const std::vector<std::string>& names);
-
 }  // namespace talus::io

@@ -87,6 +87,7 @@ std::optional<double> number_of_cell(const std::string& text) {
   const std::string value = trimmed(text);
   if (value.empty()) return std::nullopt;
   double number = 0.0;
+  if (value.starts_with("+-")) return std::nullopt;
   const char *first = value.data() + (value.front() == '+' ? 1 : 0), *last = value.data() + value.size();
   const auto [end, error] = std::from_chars(first, last, number);
   return error == std::errc{} && end == last ? std::optional(number) : std::nullopt;

@@ -147,7 +147,7 @@ void warn_of_gaps(ScreenLayer& layer, const std::string& path, const Terrain& te
   for (const Screen& screen : layer.screens) {
     const double share = share_without_height(screen, terrain.heights);
     if (share >= kNoticedWithoutHeight && on_map.contains(screen.id))
-      lacks.push_back(with_digits(100.0 * share, share < 0.995 ? 2 : 4) + " % of screen " + screen.id);
+      lacks.push_back(percent(share, 2) + " of screen " + screen.id);
   }
   if (!lacks.empty())
     layer.warnings.push_back(path + ": where the DEM has no height (off it, in its outer half cell or in a gap) lie " +

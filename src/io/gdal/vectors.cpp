@@ -249,7 +249,7 @@ std::vector<Cell> cells_of(const Parts& parts, const Grid& grid, PolygonCells& o
       of_polygons.add(inside, at_all);
   }
   for (const OGRLineString& line : parts.lines) append_cells(line, grid, cells);
-  if (parts.polygons.size() + parts.lines.size() == 1 && parts.lines.empty()) return cells;
+  if (parts.polygons.size() == 1 && parts.lines.empty()) return cells;
   std::sort(cells.begin(), cells.end(), from_north_west);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   of_polygons.keep_far_from(cells);
@@ -271,9 +271,9 @@ std::string lack_text(const Lack& lack) {
                       : lack.outside == 0.0 ? "where the DEM has no heights"
                                             : "outside the DEM or where it has no heights";
   const std::string events = lack.frequency > 0.0 ? ", and its " + with_digits(lack.frequency, 3) + kAllOnTheRest +
-                                                        with_digits(100.0 * (1.0 - share), 2) + " % that are left"
+                                                        percent(1.0 - share, 2) + " that are left"
                                                   : "";
-  return with_digits(100.0 * share, share < 0.995 ? 2 : 3) + " % of " + lack.name + " lies " + where + events;
+  return percent(share, 2) + " of " + lack.name + " lies " + where + events;
 }
 
 /// Features that release nothing.
@@ -459,7 +459,6 @@ SourceLayer read_sources(const std::string& path, const Terrain& terrain, const 
   Placer placer(terrain, out);
   for_each_feature(layer, [&](const Feature& feature) {
     out.features.push_back(attributes.read(*feature));
-    out.ids.push_back(feature->GetFID());
     placer.place(layer.parts(*feature), feature->GetFID());
   });
   placer.finish(path, layer, terrain);

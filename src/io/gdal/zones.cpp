@@ -137,8 +137,8 @@ void tell_cover(GDALDataset& dataset, const std::string& wkt, const std::string&
   }
   const double share = static_cast<double>(cells - given) / static_cast<double>(cells);
   if (share > kNoticed)
-    warnings.push_back(path + ": gives no zone to " + with_digits(100.0 * share, share < 0.995 ? 2 : 3) +
-                       " % of the cells of the DEM (off the raster, or nodata): they get the default ground");
+    warnings.push_back(path + ": gives no zone to " + percent(share, 2) +
+                       " of the cells of the DEM (off the raster, or nodata): they get the default ground");
 }
 
 void read_codes(GDALDataset& dataset, const ZoneRequest& request, const Terrain& terrain, ZoneLayer& out) {

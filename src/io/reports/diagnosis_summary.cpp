@@ -21,7 +21,7 @@ Markup bold(const std::string& text) {
 
 /// "a", "a and b", "a, b and c".
 template <class Text>
-Text listed(const std::vector<Text>& words) {
+Text in_a_sentence(const std::vector<Text>& words) {
   Text text;
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (i > 0) text += std::string_view(i + 1 == words.size() ? " and " : ", ");
@@ -42,7 +42,7 @@ std::string with_values(const DiagnosisRound& round) {
     values.push_back(p.key.substr(p.key.rfind('.') + 1) + " " + with_digits(c.values[i], 2) +
                      (p.unit.empty() || p.unit == "1" ? "" : " " + p.unit));
   }
-  return values.empty() ? "" : ": " + listed(values);
+  return values.empty() ? "" : ": " + in_a_sentence(values);
 }
 
 Markup missing(const DiagnosisRecord& record) {
@@ -50,7 +50,7 @@ Markup missing(const DiagnosisRecord& record) {
   std::vector<Markup> effects;
   for (const DiagnosisRound& round : d.rounds)
     if (found(round)) effects.push_back(bold(round.effect) + " (" + round.where + with_values(round) + ")");
-  if (!effects.empty()) return "The model lacks "_html + listed(effects) + ".";
+  if (!effects.empty()) return "The model lacks "_html + in_a_sentence(effects) + ".";
   if (d.rounds.front().effect == "unexplained")
     return "Something is missing that no effect of the library explains better than chance."_html;
   if (d.rounds.front().p_value <= record.options.level_of_round(0))
@@ -96,7 +96,7 @@ Markup sure(const DiagnosisRecord& record) {
     if (family.p_corrected <= level) rare.push_back(family.name + " (p " + with_digits(family.p_corrected, 1) + ")");
   std::string text = rare.empty() ? "No family of effects is significant (smallest p " + with_digits(first.p_value, 2) +
                                         ", corrected for their number)."
-                                  : "What the ground alone leaves depends on: " + listed(rare) +
+                                  : "What the ground alone leaves depends on: " + in_a_sentence(rare) +
                                         ", corrected for the number of families.";
   if (const std::string row = residual_text(first, record.options.later_level); !row.empty())
     text += (rare.empty() ? " But " : " And ") + row + ".";
@@ -133,7 +133,7 @@ std::string undecided(const Diagnosis& d) {
   std::string text;
   for (const DiagnosisRound& round : d.rounds)
     if (found(round) && !round.alike.empty())
-      text += round.effect + " cannot be told apart from " + listed(round.alike) + " on these data. ";
+      text += round.effect + " cannot be told apart from " + in_a_sentence(round.alike) + " on these data. ";
   for (const DiagnosisRound& round : d.rounds)
     for (const FittedCandidate& c : round.candidates)
       if (c.effect != round.effect && !std::isnan(c.confirmation.fitted))
@@ -149,7 +149,7 @@ std::string undecided(const Diagnosis& d) {
   std::vector<std::string> hidden;
   for (const DetectionLimit& limit : d.rounds.back().limits)
     if (std::isnan(limit.amount)) hidden.push_back(limit.effect);
-  if (!hidden.empty()) text += "Even a large amount of these would not show for sure: " + listed(hidden) + ".";
+  if (!hidden.empty()) text += "Even a large amount of these would not show for sure: " + in_a_sentence(hidden) + ".";
   return text.empty() ? "None of the effects of the library is hidden: one above its amount below would most likely "
                         "have been seen."
                       : text;
@@ -163,10 +163,10 @@ std::string further_speeds(std::span<const DetectionLimit> limits) {
       only_then.push_back(limit.effect);
     else if (limit.with_further_speeds - limit.off < kSharper * (limit.amount - limit.off))
       sharper.push_back(limit.effect);
-  if (!sharper.empty()) words.push_back("would show " + listed(sharper) + " at less than half the amount");
+  if (!sharper.empty()) words.push_back("would show " + in_a_sentence(sharper) + " at less than half the amount");
   if (!only_then.empty())
-    words.push_back("would show a large amount of " + listed(only_then) + ", of which these data show none");
-  return words.empty() ? "" : "Speeds at more screens (12 were assumed): they " + listed(words) + ". ";
+    words.push_back("would show a large amount of " + in_a_sentence(only_then) + ", of which these data show none");
+  return words.empty() ? "" : "Speeds at more screens (12 were assumed): they " + in_a_sentence(words) + ". ";
 }
 
 /// Advice where few blocks were held out: with a finding, its gain rests on these; without, all that were fitted count.

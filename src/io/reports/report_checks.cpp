@@ -271,7 +271,7 @@ void check_hazard(const CheckedRun& checked, Checks& checks) {
   if (const auto share = checked.sheet.undecided)
     checks.push_back(
         {*share > 0.05 ? Mark::Look : Mark::Fine, "Cells whose class is not decided",
-         with_digits(100.0 * *share, 2) + " % of the pixels with a class",
+         percent(*share, 2) + " of the pixels with a class",
          "There the classes at the 95 % bounds of the number of blocks differ (map \"Class not decided\"). "
          "More blocks decide them: --trajectories, or --until-error."});
   if (!hazard.same_run)

@@ -4,6 +4,7 @@
 #include "io/files/json.hpp"
 #include "io/scenario/table_reader.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/input_faults.hpp"
 #include "talus/base/version.hpp"
 #include "talus/products/hazard_table.hpp"
 
@@ -67,7 +68,7 @@ HazardMatrix read_matrix(const std::string& path) {
       faults.push_back(
           path + ": " + fault +
           (fault.starts_with("classes") && !own_classes ? "; the file has none, and the default has 3 rows of 4" : ""));
-  if (!faults.empty()) throw InputError(faults.front());
+  if (!faults.empty()) throw InputFaults(faults, faults.size());
   return matrix;
 }
 

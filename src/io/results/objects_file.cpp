@@ -144,7 +144,7 @@ struct ObjectLayer::State {
   bool known(std::size_t i) const { return without_height[i] < 1.0; }
   bool is_partial(std::size_t i) const { return known(i) && without_height[i] >= kNoticedWithoutHeight; }
   /// "95 %": how much of an object has no height.
-  std::string lack(std::size_t i) const { return percent(without_height[i], without_height[i] < 0.995 ? 2 : 4); }
+  std::string lack(std::size_t i) const { return percent(without_height[i], 2); }
   void warn_of_places(const std::string& path, const std::vector<bool>& off_map);
   void warn_of_names(const std::string& path);
   void warn_of_widths(const std::string& path);

@@ -6,14 +6,13 @@
 #include "io/files/json.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
+#include "talus/products/accuracy.hpp"
 
 namespace talus::io {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr std::int64_t kMostRounds = 1'000'000'000;
 
 /// The plan that a run or a part was of.
 struct RecordedPlan {

@@ -8,6 +8,7 @@
 #include "io/files/checksum.hpp"
 #include "io/scenario/frequency_keys.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/input_faults.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
 
@@ -170,7 +171,7 @@ GivenFrequencies apply_weighting(const std::string& file, Scenario& scenario) {
   if (says_area || scenario.frequency.by_true_area) read.by_true_area = scenario.frequency.by_true_area;
   read_features(features, scenario, read);
   top.finish();
-  if (!faults.empty()) throw InputError(faults.front());
+  if (!faults.empty()) throw InputFaults(faults, faults.size());
   if (of_features && not_by_features) require_all_features(scenario, file);
   if (!AnnualWeights::of(scenario))
     throw InputError(file + ": no blocks fall with these frequencies; give one above 0");
@@ -182,8 +183,8 @@ GivenFrequencies apply_weighting(const std::string& file, Scenario& scenario) {
 std::string class_shares_text(const GivenFrequencies& given) {
   if (given.class_shares.empty()) return {};
   std::vector<std::string> percents;
-  for (const double share : given.class_shares) percents.push_back(with_digits(100.0 * share, share < 0.995 ? 2 : 4));
-  return "the classes of blocks keep their shares of the events: " + joined(percents) + " %";
+  for (const double share : given.class_shares) percents.push_back(percent(share, 2));
+  return "the classes of blocks keep their shares of the events: " + joined(percents);
 }
 
 }  // namespace talus::io

@@ -27,7 +27,7 @@ void CrossingsWriter::write(std::span<const Crossing> crossings) {
     const double rotation = Block{c.diameter, c.mass}.rotational_energy_kj(c.spin);
     text += std::to_string(c.source) + ',' + std::to_string(c.block) + ',' + screens_[c.screen];
     for (const double value : {c.speed, energy, energy + rotation, c.height, c.spin, c.mass})
-      (text += ',') += with_digits(value, 6);
+      (text += ',') += significant(value, 6);
     (text += ',') += with_decimals(place_.x(c.x), 3);
     (text += ',') += with_decimals(place_.y(c.y), 3);
     if (pieces_) text += ',' + std::to_string(c.piece);

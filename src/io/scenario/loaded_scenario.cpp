@@ -125,7 +125,7 @@ void check_diameters(const Scenario& parts, const SourceLayer& layer, const std:
   for (const SourceCell& cell : layer.cells) {
     if (!std::isnan(layer.features[cell.feature].diameter.low)) continue;
     throw InputError(
-        path + ": feature " + std::to_string(layer.ids[cell.feature]) +
+        path + ": feature " + std::to_string(layer.features[cell.feature].id) +
         " has no block diameter, must have one (there is no default block): give [blocks] diameter in the "
         "scenario, --diameter M, or a field diameter "
         "(or diameter_min and diameter_max) of the sources, in m; --field diameter=COLUMN where it has another "

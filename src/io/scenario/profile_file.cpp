@@ -12,6 +12,7 @@
 #include "scenario_text.hpp"
 #include "size_warning.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/input_faults.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
@@ -198,9 +199,7 @@ LoadedProfile load_profile(const ProfileFlags& flags) {
   const std::vector<const NamedFile*> files{&spec.dem, &spec.profile->csv, &spec.profile->line};
   check_encoding(files, faults);
   check_files(files, faults);
-  if (!faults.empty())
-    throw InputError(faults.front() +
-                     (faults.size() == 1 ? "" : " (and " + std::to_string(faults.size() - 1) + " more)"));
+  if (!faults.empty()) throw InputFaults(faults, faults.size());
   LoadedProfile out;
   out.step = spec.profile->step;
   out.bin = spec.profile->bin;

@@ -165,14 +165,13 @@ void check_stands(const Scenario& s) {
   if (s.drag_and_stems || !drag.acts(s.effects) || !stems.acts(s.effects)) return;
   const Grid& grid = s.surface.grid();
   const EffectCells with_drag(drag, s), with_stems(stems, s);
-  for_each_row(s.surface.heights(), [&](int row) {
-    for (int column = 0; column < grid.columns; ++column)
-      if (with_drag.has(column, row) && with_stems.has(column, row))
-        throw InputError(
-            "effects: vegetation-drag and forest-stems act at the same place (the cell at " +
-            with_decimals(grid.centre_x(column), 1) + " m, " + with_decimals(grid.centre_y(row), 1) +
-            " m from the south-western corner), where the stand would take its energy twice: give them zones or files "
-            "apart from each other, or set allow_both = true in [effects]");
+  with_drag.for_each([&](int column, int row) {
+    if (with_stems.has(column, row))
+      throw InputError(
+          "effects: vegetation-drag and forest-stems act at the same place (the cell at " +
+          with_decimals(grid.centre_x(column), 1) + " m, " + with_decimals(grid.centre_y(row), 1) +
+          " m from the south-western corner), where the stand would take its energy twice: give them zones or files "
+          "apart from each other, or set allow_both = true in [effects]");
   });
 }
 

@@ -24,16 +24,36 @@ TEST(TextOf, ReadsBackExactly) {
     for (const double v : {value, -value}) EXPECT_EQ(std::strtod(text_of(v).c_str(), nullptr), v) << text_of(v);
 }
 
-TEST(WithDigits, IsAsPrintfWrites) {
+TEST(Significant, IsAsPrintfWrites) {
   std::array<char, 400> text{};
   for (const double value : {0.0, -0.0, 0.125, 0.375, 2.5, 1.0 / 3.0, 999.95, 999999.5, 1e6, 123456789.0, 1e-5,
                              4.9e-324, -17.25, 1e300, std::numeric_limits<double>::infinity(), std::nan("")})
     for (const int digits : {1, 2, 3, 4, 6}) {
       std::snprintf(text.data(), text.size(), "%.*g", digits, value);
-      EXPECT_EQ(with_digits(value, digits), text.data());
+      EXPECT_EQ(significant(value, digits), text.data());
       std::snprintf(text.data(), text.size(), "%.*f", digits - 1, value);
       EXPECT_EQ(with_decimals(value, digits - 1), text.data());
     }
+}
+
+TEST(WithDigits, HasNoExponentForLargeNumbers) {
+  EXPECT_EQ(with_digits(0.12345, 4), "0.1235");
+  EXPECT_EQ(with_digits(14'850.4, 4), "14850");  // kg of a block of 5.5 m3
+  EXPECT_EQ(with_digits(243.0, 2), "243");
+  EXPECT_EQ(with_digits(99.4, 2), "99");
+  EXPECT_EQ(with_digits(99.6, 2), "100");
+  EXPECT_EQ(with_digits(-999.6, 3), "-1000");
+  EXPECT_EQ(with_digits(1e-5, 3), "1e-05");
+}
+
+TEST(Percent, OfAPartIsNeverThatOfTheWhole) {
+  EXPECT_EQ(percent(0.2158), "21.6 %");
+  EXPECT_EQ(percent(0.994, 2), "99 %");
+  EXPECT_EQ(percent(0.9996, 2), "99.96 %");
+  EXPECT_EQ(percent(0.999951, 2), "above 99.99 %");
+  EXPECT_EQ(percent(1.0, 2), "100 %");
+  EXPECT_EQ(percent(1e-10, 2), "below 1e-07 %");
+  EXPECT_EQ(percent(0.0), "0 %");
 }
 
 TEST(CsvField, IsInQuotationMarksWhereItMust) {

@@ -42,7 +42,7 @@ SCENARIO_INPUTS = {
     "field of": {"zone-field": "zones"},
     "raster too": {"zones"},
     "advanced": {"scenario", "surface", "thresholds", "seed", "energy-total", "bounds", "vectors", "rounds", "until-error",
-                 "deformation-coefficient", "above", "most-rounds", "zones-raster", "pits"},
+                 "deformation-coefficient", "above", "most-rounds", "pits"},
     "labels": {"parameters": "ground-parameters"},
     "needs": [("scenario",), ("dem", "sources")],
 }
@@ -249,8 +249,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         return tr(p["text"]) + least + (". " + tr("Several layers, as a road and houses, are joined into one.") if several else "")
 
     def _label(self, p):
-        name = "folder" if p["type"] == "folder" and p["name"] == "out" and not p["written"] else p["name"]
-        name = self.table.get("labels", {}).get(name, name)
+        name = self.table.get("labels", {}).get(p["name"], p["name"])
         return label("weighting" if p["type"] == "file" and name == "frequency" else name)
 
     def _title(self, p):

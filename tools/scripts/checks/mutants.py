@@ -141,7 +141,7 @@ def main():
     for mutant in mutants:
         began = time.time()
         by = caught(tree, program, build, mutant)
-        survivors += by == "SURVIVED" or by.startswith("NOT FOUND")
+        survivors += by.startswith(("SURVIVED", "NOT FOUND", "does not compile"))
         print(f"{mutant[0]}: {' '.join(mutant[1].split())}  ->  {' '.join(mutant[2].split()) or '(removed)'}\n    {by}, "
               f"{time.time() - began:.0f} s", flush=True)
     print(f"{len(mutants)} faults, {survivors} survived")

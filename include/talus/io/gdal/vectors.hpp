@@ -21,7 +21,6 @@ bool is_of_cut_sources(const std::string& warning);
 struct SourceLayer {
   std::vector<SourceFeature> features;  ///< in the order of the file, with those wholly off the map
   std::vector<SourceCell> cells;        ///< by feature: its cells row by row from the north-west, then its points
-  std::vector<std::int64_t> ids;        ///< of the features in the file, for messages
   std::vector<std::string> fields;      ///< names of all fields of the layer
   std::vector<Setting> attributes;      ///< settings read from the fields
   std::vector<Reprojection> reprojections;
