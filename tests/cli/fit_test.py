@@ -4,6 +4,7 @@ import importlib.util
 import json
 import math
 import os
+import tomllib
 import unittest
 import warnings
 from xml.etree import ElementTree
@@ -152,6 +153,17 @@ class OwnCampaign(Case):
             for height, rank in zip(heights, observable["ranks"], strict=True):
                 self.assertAlmostEqual(height, unit * rank, delta=0.15)
 
+    def fitted_diameters(self, model):
+        with open(self.path(model), "rb") as file:
+            return tomllib.load(file)["fitted_diameters"]
+
+    def diameters_of_fitting_rows(self):
+        """The smallest and the largest [m], to a millimetre outwards."""
+        with open(self.path("blocks.csv"), encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file) if row.get("holdout") != "1"]
+        found = [(6 * float(row["mass_kg"]) / math.pi / float(row.get("density_kgm3") or 2700)) ** (1 / 3) for row in rows]
+        return [math.floor(1000 * min(found)) / 1000, math.ceil(1000 * max(found)) / 1000]
+
     def test_calibrate_lowers_the_error_and_writes_a_model_that_runs(self):
         before = os.listdir(self.folder)
         done = self.run_well("calibrate", self.campaign, "-o", self.path("fit"), "--fit", "theta_scale,En50", "--starts",
@@ -171,6 +183,7 @@ class OwnCampaign(Case):
         theta = keys["ground.zones.default.theta_scale"]
         self.assertLess(abs(math.log(theta["value"] / 0.3)), 0.5)
         self.assertEqual(len(result["correlation"]), 2)
+        self.assertEqual(self.fitted_diameters("fit/fitted.toml"), self.diameters_of_fitting_rows())
         report = self.read_text("fit/report.md")
         for word in ("95 % interval", "Held-out rows", "runout", "speed S1", "Crossed S1", "climatology", "below P95", "Run-out beyond", "`ranks.svg`"):
             self.assertIn(word, report)

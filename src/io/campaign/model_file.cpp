@@ -1,7 +1,9 @@
 #include "talus/io/campaign/model_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 
 #include "io/files/checksum.hpp"
@@ -91,6 +93,18 @@ std::string ground_text(const Ground& ground) {
   return text + "shape = [" + text_of(ground.shape_min) + ", " + text_of(ground.shape_max) + "]\n";
 }
 
+/// Equivalent diameters of the fitting rows, of all blocks if there are none [m].
+Range fitted_diameters(const Campaign& campaign) {
+  const bool all = std::ranges::all_of(campaign.blocks, &MeasuredBlock::holdout);
+  Range sizes{std::numeric_limits<double>::infinity(), 0.0};
+  for (const MeasuredBlock& block : campaign.blocks) {
+    if (block.holdout && !all) continue;
+    const double diameter = equivalent_diameter(block.mass, block.density);
+    sizes = {std::min(sizes.low, diameter), std::max(sizes.high, diameter)};
+  }
+  return sizes;
+}
+
 /// Adds a fault for an effect that acts outside the zones of the campaign.
 void check_places(const std::string& name, const EffectSpec& effect, const Campaign& campaign, const std::string& path,
                   std::vector<std::string>& faults) {
@@ -154,7 +168,8 @@ Model read_model(const std::string& path, const Campaign& campaign, std::vector<
     warn_of_undescribed_zones(spec, campaign, path, *warnings);
     warn_of_other_terrain(
         spec, campaign.surface.grid(), kind, path, "the campaign is simulated",
-        ": give --surface " + std::string(name_of(spec.model_surface.value_or(kind))) + ", or fit again", *warnings);
+        ": give --surface " + std::string(name_of(spec.fitted_on.surface.value_or(kind))) + ", or fit again",
+        *warnings);
   }
   Model model;
   model.impact = spec.values.impact;
@@ -183,6 +198,9 @@ std::string model_text(const Model& model, const LoadedCampaign& loaded, const s
   for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
   text += "\nsurface = " + toml_text(std::string(name_of(loaded.campaign.surface.kind()))) + "\n";
   text += "fitted_cell = " + text_of(loaded.campaign.surface.grid().cell_x) + "  # m, side of the cells of the DEM\n";
+  const Range sizes = fitted_diameters(loaded.campaign);
+  text += "fitted_diameters = [" + text_of(std::floor(1e3 * sizes.low) / 1e3) + ", " +
+          text_of(std::ceil(1e3 * sizes.high) / 1e3) + "]  # m\n";
   for (std::size_t i = 0; i < loaded.campaign.zone_names.size(); ++i) {
     text += "\n[ground.zones." + toml_key(loaded.campaign.zone_names[i]) + "]\n";
     text += "preset = " + toml_text(std::string(kDefaultPreset)) + "\n";

@@ -16,4 +16,7 @@ namespace talus::io {
 void warn_of_other_terrain(const ScenarioSpec& spec, const Grid& grid, SurfaceKind kind, const std::string& where,
                            const std::string& used, const std::string& remedy, std::vector<std::string>& warnings);
 
+/// Warns where a run changes c of the impact law under a ground that was fitted with another one.
+void warn_of_other_coefficient(const ScenarioSpec& spec, std::vector<std::string>& warnings);
+
 }  // namespace talus::io

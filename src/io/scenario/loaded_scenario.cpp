@@ -249,6 +249,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   warn_of_other_terrain(spec, terrain.heights.grid, spec.surface, spec.include.where, "this run is",
                         " (" + spec.origin("surface") + "): fit it again, or leave `surface` to the included file",
                         out.warnings);
+  warn_of_other_coefficient(spec, out.warnings);
   stop_at_faults(faults, all_faults);
   parts.features = std::move(sources.features);
   parts.sources = std::move(sources.cells);

@@ -18,6 +18,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/input_access.hpp"
+#include "talus/simulate/scenario/presets.hpp"
 
 namespace talus::io {
 
@@ -25,6 +26,8 @@ namespace {
 
 constexpr Bounds kFittedCell{"fitted_cell", "m",    "side of the cells of the DEM on which a model was fitted",
                              0.0,           1000.0, Bounds::AboveMin};
+constexpr Bounds kFittedDiameters{"fitted_diameters", "m", "of the blocks to which a model was fitted", 0.0, 1000.0,
+                                  Bounds::AboveMin};
 
 using Kind = TomlValue::Kind;
 
@@ -75,13 +78,17 @@ class SpecReader {
   /// Reads the keys of a file that holds only a model.
   void read_model_keys(const TomlValue& root) {
     TableReader top(&root, "", file_, faults_);
-    spec_.model_surface = surface(top);
-    spec_.model_cell = top.number("fitted_cell", kFittedCell);
+    FittedOn& fitted = spec_.fitted_on;
+    fitted.surface = surface(top);
+    fitted.cell = top.number("fitted_cell", kFittedCell);
+    fitted.diameters = top.range("fitted_diameters", kFittedDiameters);
     TableReader ground = top.table("ground");
     GroundReader(spec_, origin_, faults_).read(ground);
     ground.finish();
     TableReader model = top.table("model");
     read_impact(model);
+    if (model.find("deformation_coefficient") != nullptr)
+      fitted.deformation_coefficient = spec_.values.impact.deformation_coefficient;
     model.finish();
     read_effects(spec_, top.table("effects"), base_, origin_);
     TableReader barriers = top.table("barriers");

@@ -65,13 +65,20 @@ struct ProfileSpec {
   double bin = 5.0;             ///< of the results [m]
 };
 
+/// What a model was fitted on, as far as its file says so.
+struct FittedOn {
+  std::optional<SurfaceKind> surface;
+  std::optional<double> cell;                     ///< side of the cells of the DEM [m]
+  std::optional<Range> diameters;                 ///< of the blocks [m]
+  std::optional<double> deformation_coefficient;  ///< c of the impact law [-]
+};
+
 /// Content of a scenario file and the flags, before any other file is opened.
 struct ScenarioSpec {
   NamedFile scenario, include, dem, sources, ground, screens, barriers;
   SurfaceKind surface = kDefaultSurface;
-  std::optional<SurfaceKind> model_surface;  ///< on which an included model was fitted
-  std::optional<double> model_cell;          ///< side of the cells of the DEM on which it was fitted [m]
-  std::vector<std::string> vrt_folders;      ///< below which a VRT may name files; where a VRT is named
+  FittedOn fitted_on;                    ///< of an included model
+  std::vector<std::string> vrt_folders;  ///< below which a VRT may name files; where a VRT is named
   std::string zones_where;  ///< "scenario.toml:12": [ground.zones] of the scenario, for messages; empty: it has none
   std::string ground_field;
   ZoneSpec default_ground;

@@ -1,6 +1,7 @@
 #include "size_warning.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <string_view>
 
@@ -68,6 +69,12 @@ void warn_of_sizes(const ScenarioSpec& spec, const Scenario& scenario, std::vect
   std::vector<const Preset*> presets;
   for (const ZoneSpec* zone : grounds)
     if (from_preset(*zone, "theta_scale") || from_preset(*zone, "En50")) presets.push_back(&find_preset(zone->preset));
+  const std::string file = std::filesystem::path(spec.include.path).filename().string();
+  Preset fitted{.name = file, .ground = {}, .source = {}, .where = {}, .sizes = {}};
+  if (const std::optional<Range>& sizes = spec.fitted_on.diameters) {
+    fitted.sizes = {sizes->low, sizes->high, {}};
+    presets.push_back(&fitted);
+  }
   for (std::string& warning : std::vector<std::string>{size_warning(scenario, presets), guess_warning(presets),
                                                        sorting_warning(scenario.effects), gain_warning(grounds),
                                                        spec.profile ? std::string() : plane_warning(grounds)})
