@@ -141,6 +141,13 @@ class Score(Deposits):
         for a, b in zip(one["fit"]["groups"], other["fit"]["groups"]):
             self.assertAlmostEqual(a["score"], b["score"], delta=0.02)
 
+    def test_blocks_above_every_source_are_named(self):
+        write_features(self.path("mapped.gpkg"), "mapped", [(box(100, 10, 100, 280), [])])
+        self.deposits(self.rows + [["up", str(WEST + 150), str(NORTH - 30), "0.5"]])
+        done = self.run_well("score", self.path("campaign.toml"), "--parameters", self.model, "--trials", "10")
+        self.assertIn("1 of 51 blocks lie higher than every source of ", done.stderr)
+        self.assertIn(" m: up; no block can get there", done.stderr)
+
     def test_blocks_outside_the_polygons_are_left_out_and_said(self):
         self.deposits(self.rows + [["far", str(WEST + 20), str(NORTH - 200), "0.5"]])
         done = self.run_well("score", self.path("campaign.toml"), "--parameters", self.model)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "campaign_tables.hpp"
@@ -165,6 +166,23 @@ void keep_mapped(const DepositSpec& spec, const MappedDeposits& deposits, std::v
                      " blocks lie outside the mapped polygons and are left out: " + listed(outside));
 }
 
+/// Says which blocks no source can have released.
+void warn_of_higher_blocks(const DepositSpec& spec, const MappedDeposits& deposits, const Terrain& terrain,
+                           const std::vector<MeasuredBlock>& blocks, std::vector<std::string>& warnings) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const DepositSource& source : deposits.sources) highest = std::max(highest, source.place.z());
+  const Grid& grid = terrain.heights.grid;
+  std::vector<std::string> higher;
+  for (const MeasuredBlock& block : blocks)
+    if (terrain.heights.at(grid.column_of(block.stop->x()), grid.row_of(block.stop->y())) > highest)
+      higher.push_back(block.id);
+  if (higher.empty()) return;
+  warnings.push_back(spec.table.path + ": " + std::to_string(higher.size()) + " of " + std::to_string(blocks.size()) +
+                     " blocks lie higher than every source of " + spec.sources.path + ", the highest of which is at " +
+                     with_digits(highest, 4) + " m: " + listed(higher) +
+                     "; no block can get there: is a cliff missing, or are the coordinates wrong?");
+}
+
 void require_blocks_for(const DepositSpec& spec, std::size_t blocks) {
   if (spec.strips > blocks)
     throw InputError("[deposits] strips = " + std::to_string(spec.strips) + ", must be at most " +
@@ -240,6 +258,7 @@ void read_deposits(const DepositSpec& spec, const Terrain& terrain, Campaign& ca
   MappedDeposits deposits =
       mapped_deposits(sources_of(spec, terrain, warnings), mapped_cells(spec.mapped, terrain, warnings));
   keep_mapped(spec, deposits, campaign.blocks, warnings);
+  warn_of_higher_blocks(spec, deposits, terrain, campaign.blocks, warnings);
   if (spec.strips > 0) {
     require_blocks_for(spec, campaign.blocks.size());
     hold_out_strips(spec, deposits, campaign.blocks);
