@@ -310,8 +310,8 @@ void Checkpoint::read_manifest() {
   if (io::understood(file, "must be as this version of Talus has written it; run this part again", read) != plan_)
     throw InputError(file.string() +
                      ": belongs to another plan: the scenario, a flag or a file is not what it was when this was "
-                     "traced. To go on give the same again, or begin anew (--overwrite); to merge give parts of the "
-                     "plan of the first one");
+                     "traced. To go on (--resume) give the same again, with the same seed and trajectories, or begin "
+                     "anew (--overwrite); to merge give parts of the plan of the first one");
 }
 
 void Checkpoint::remove_unnamed() const {

@@ -202,6 +202,12 @@ class Design(Case):
         self.assertAlmostEqual(values["v50"], 10.0, 9)
         self.assertAlmostEqual(values["m_d"], 2700.0 * 1.1, 9)
 
+    def test_a_volume_far_above_those_of_the_run_is_said(self):
+        """The largest block has 2 m3: 2000 m3 are kg, more likely."""
+        self.assertNotIn("--volume", " ".join(self.design("--volume", "20")[1]["notes"]))
+        notes = " ".join(self.design("--volume", "2000")[1]["notes"]).replace("\u00a0", " ")
+        self.assertIn("--volume: 2 000 m3 is 1 000 times the largest block that crosses in the run, 2 m3: is it in m3?", notes)
+
     def test_a_denser_rock_has_more_energy(self):
         """The largest block has 5000 kg at the run's 2500 kg/m3: 2 m3, which weigh 6000 kg at 3000 kg/m3."""
         values, _, _ = self.design("--density", "3000")

@@ -385,6 +385,15 @@ class Messages(Profile):
             self.assertNotIn(word, said)
         self.assertEqual(len(self.record()["warnings"]), 1)
 
+    def test_a_profile_that_is_drawn_upwards(self):
+        down = [(0, 100), (50, 60), (100, 0), (120, 30)]
+        for nodes, said in ((down, False), ([(120 - x, z) for x, z in reversed(down)], True)):
+            self.nodes(*nodes)
+            self.scenario("x = 60")
+            text = "the profile falls lower before the sources (to 0.0 m) than behind them (to "
+            self.assertEqual(text in self.told("--trajectories", "5"), said)
+        self.fails(2, "out: is of a profile, which has no maps", arguments=["hazard", self.path("out")])
+
     def test_blocks_that_leave(self):
         self.nodes((0, 100), (100, 0))
         self.scenario("x = 20")

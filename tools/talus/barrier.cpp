@@ -113,7 +113,8 @@ CrossingTable simulated_crossings(const RunSummary& run, const BarrierOptions& o
     throw talus::InputError(file.string() + ": no block crosses screen '" + o.screen + "': " +
                             (gap || left
                                  ? "this does not say that a barrier is not needed there: " + (gap ? *gap : *left)
-                                 : "a barrier is not needed there, or the run has too few trajectories to say"));
+                                 : "a barrier is not needed there, or the line lies uphill of the sources, or barriers "
+                                   "of the run catch the blocks before it, or the run has too few trajectories to say"));
   for (const std::size_t told : {crossings.speed.size(), crossings.energy.size(), crossings.height.size(),
                                  crossings.mass.size(), crossings.places.size()})
     if (told != crossings.count)
@@ -354,6 +355,15 @@ void add_stretches(BarrierReport& report, std::span<const talus::LineCrossing> a
   if (const auto note = talus::io::stretch_note(report)) report.notes.push_back(*note);
 }
 
+/// A line where the volume that was given is far above those of the run, as where a mass was typed.
+std::optional<std::string> volume_note(double volume, double largest) {
+  constexpr double kFarAbove = 10.0;
+  if (!(volume > kFarAbove * largest)) return std::nullopt;
+  return "--volume: " + talus::readable(volume) + " m3 is " + talus::readable(volume / largest) +
+         " times the largest block that crosses in the run, " + talus::readable(largest) +
+         " m3: is it in m3? The speeds and heights are those of the blocks of the run";
+}
+
 /// @param all  crossings, also later ones of a block
 void add_design(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
                 std::span<const talus::LineCrossing> all, const RunSummary& run, const BarrierOptions& o) {
@@ -362,6 +372,11 @@ void add_design(BarrierReport& report, std::span<const talus::LineCrossing> cros
   const talus::DesignBlockRule rule{o.volume, o.density.value_or(run.density), run.density};
   report.block_from = o.volume ? "--volume" : "the largest that crosses";
   report.block = rule.of(crossings);
+  if (o.volume)
+    if (const auto note = volume_note(*o.volume, talus::DesignBlockRule{{}, rule.density, rule.rock_density}
+                                                     .of(crossings)
+                                                     .volume))
+      report.notes.push_back(*note);
   report.design = talus::design_barrier(crossings, report.block, report.factors);
   report.longest = o.stretch;
   if (!run.of_profile) add_stretches(report, all, crossings.size(), rule, run, o);

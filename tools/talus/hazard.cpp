@@ -46,6 +46,8 @@ struct HazardOptions {
 fs::path tally_file(const fs::path& folder) {
   talus::io::require_results(folder);
   if (const auto file = talus::io::hazard_file_of(folder)) return *file;
+  if (talus::io::read_run(folder.string()).of_profile)
+    throw talus::InputError(folder.string() + ": is of a profile, which has no maps: hazard needs a run over a DEM");
   throw talus::InputError(
       folder.string() +
       ": this run has no annual frequencies; give the sources a field frequency (events per year; of another name: "

@@ -48,6 +48,20 @@ void check_before_end(const ProfileSpec& p, const Grid& grid, const std::string&
                      text_of(last) + " m at most, the last column of the profile (step = " + text_of(p.step) + " m)");
 }
 
+/// Warns of a profile that falls from its sources towards its start, as one that was drawn upwards.
+void warn_of_direction(const ProfileSpec& p, const Profile& profile, std::vector<std::string>& warnings) {
+  double before = profile.height(p.source.low), after = profile.height(p.source.high);  // lowest, on each side
+  for (const Eigen::Vector2d& node : profile.nodes) {
+    if (node.x() < p.source.low) before = std::min(before, node.y());
+    if (node.x() > p.source.high) after = std::min(after, node.y());
+  }
+  if (!(before < after)) return;
+  warnings.push_back("the profile falls lower before the sources (to " + with_decimals(before, 1) + " m) than behind " +
+                     "them (to " + with_decimals(after, 1) +
+                     " m): is it drawn from the top down? x grows downhill, and blocks that fall towards its start "
+                     "leave it there");
+}
+
 void place_sources(const ScenarioSpec& spec, const Profile& profile, const Grid& grid, Scenario& parts) {
   const ProfileSpec& p = *spec.profile;
   const double west = grid.west;
@@ -217,6 +231,7 @@ LoadedProfile load_profile(const ProfileFlags& flags) {
   Scenario parts = spec.values;
   parts.impact.in_plane = true;
   place_sources(spec, out.profile, grid, parts);
+  warn_of_direction(*spec.profile, out.profile, loaded.warnings);
   if (parts.blocks.classes.empty() && parts.blocks.power_law.volume.high == 0.0)
     throw InputError((spec.scenario.where.empty() ? "" : spec.scenario.where + ": ") +
                      "no block diameter, must have one: give --diameter, or [blocks] diameter in the file, in m");
