@@ -66,6 +66,10 @@ class Again(RunCase):
         self.fails(1, "the run is done, but too many", arguments=[*arguments, "--resume"])  # not traced again
         self.assertEqual(os.stat(self.path("out/run.json")).st_mtime_ns, before)
 
+    def test_nothing_to_resume(self):
+        done = self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "--resume")  # a name that was mistyped
+        self.assertIn("note: there is no interrupted run to resume in " + self.path("out") + ": the run begins anew", done.stderr)
+
     def test_a_run_that_is_done(self):
         self.run_scenario("out")
         again = self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "--resume")  # a task that was requeued

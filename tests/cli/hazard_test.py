@@ -101,6 +101,15 @@ class Hazard(OneThread, KeptRuns, Case):
         self.refused("has no annual frequencies; give the sources a field frequency", "hazard", self.path("plain"))
         self.refused("0.6: there is no such file; --frequency of this command takes a file", "hazard", self.path("out"), "--frequency", "0.6")
 
+    def test_a_run_that_replaces_hazard_maps_says_so(self):
+        self.simulated()
+        run = ["run", self.path("s.toml"), "-o", self.path("out"), "--overwrite", "--trajectories", "2"]
+        self.assertNotIn("will also remove", self.run_well(*run).stderr)
+        self.run_well("hazard", self.path("out"), "-q")
+        done = self.run_well(*run)
+        self.assertIn("note: --overwrite will also remove what later commands have written into ", done.stderr)
+        self.assertIn("annual_frequency.tif", done.stderr)
+
     def test_refusals(self):
         self.simulated()
         self.refused("is no folder of results", "hazard", self.folder)

@@ -605,6 +605,32 @@ class OffTheDem(InputCase):
         self.fails(2, "zones.tif: gives no cell of the DEM a zone: it reaches over", "the DEM over",
                    arguments=["check", self.path("s.toml")])
 
+    def test_codes_of_zones_with_an_offset(self):
+        write_dem(self.path("zones.tif"), np.ones((60, 60)))
+        gdal.Open(self.path("zones.tif"), gdal.GA_Update).GetRasterBand(1).SetOffset(1)
+        self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1.2\n'
+                             '[ground]\nfile = "zones.tif"\n[ground.zones.1]\npreset = "forest-road-3d"\n')
+        self.fails(2, "zones.tif: has a scale or an offset (1, 1)", "gdal_translate -unscale", arguments=["check", self.path("s.toml")])
+
+    def test_what_two_settings_say(self):
+        """The ground outside all zones twice, a zone called as a preset, a barrier without a capacity, a shape that nothing reads."""
+        head = 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1.2\n'
+        road = '[ground.zones.forest-road-3d]\n'
+        net = f'[barriers]\nline = [{{ id = "net", height = 3, from = [{WEST + 20}, {NORTH - 180}], to = [{WEST + 280}, {NORTH - 180}]CAPACITY }}]\n'
+        self.zones(box(0, 0, 300, 100))
+        for text, said in (('[ground]\nfile = "zones.gpkg"\n' + road + 'phi = 40\n', "[ground.zones.forest-road-3d] has no preset"),
+                           ('[ground]\nfile = "zones.gpkg"\n' + road + 'phi = 40\npreset = "forest-road-3d"\n', ""),
+                           (net.replace("CAPACITY", ""), "barriers.line: net has no capacity, so that nothing breaks it (unsafe for a net)"),
+                           (net.replace("CAPACITY", ", capacity = inf"), ""),
+                           ("axes = [3, 2, 1]\n", "blocks.axes = [3, 2, 1]: only [effects.block-shape] reads the shape")):
+            plan = self.run_well("check", self.write("s.toml", head + text)).stdout
+            for words in ("has no preset", "has no capacity", "reads the shape"):
+                self.assertEqual(words in plan, words in said, plan)
+            self.assertIn(said, plan)
+        self.write("s.toml", head + '[ground]\ndefault = "lower-talus-3d"\n[ground.zones.default]\npreset = "forest-road-3d"\n')
+        self.fails(2, "ground.default = 'lower-talus-3d': [ground.zones.default] preset is 'forest-road-3d'", "leave out the other",
+                   arguments=["check", self.path("s.toml")])
+
     def test_barriers(self):
         """Those of a file and those of the scenario, with east and north exchanged: both are called, with their extent."""
         west, east, north = WEST + 20, WEST + 280, NORTH - 180

@@ -129,6 +129,8 @@ TEST_F(Terrains, HeightsInDecimetresAreToldHowToConvert) {
 }
 
 TEST_F(Terrains, HeightsOfACompoundSystemMustBeInMetres) {
+  const std::string depths = RasterFile{.system = "EPSG:32632+5715"}.write(path("depths.tif"));  // MSL depth
+  expect_input_error([&] { read_terrain(depths); }, {"depths.tif", "heights count downwards", "--calc='-A'"});
   EXPECT_NO_THROW(read_terrain(RasterFile{.system = "EPSG:32632+5773"}.write(path("metres.tif"))));  // EGM96 height
   const std::string feet = RasterFile{.system = "EPSG:32610+6360"}.write(path("feet.tif"));  // NAVD88 height (ftUS)
   expect_input_error([&] { read_terrain(feet); }, {"feet.tif", "US survey foot", "must be metres", "gdal_calc.py"});

@@ -186,6 +186,10 @@ void OutputFolder::protect(const fs::path& file) const {
   }
 }
 
+std::vector<std::string> OutputFolder::later_results() const {
+  return io::later_results(final_path());
+}
+
 void OutputFolder::commit() {
   commit(temporary());
   std::error_code ignored;

@@ -53,6 +53,16 @@ bool is_site(const fs::path& folder) {
   });
 }
 
+/// The pages of `talus report` in a folder of a run, whatever `report -o` called them.
+std::vector<std::string> pages_in(const fs::path& folder) {
+  std::vector<std::string> pages;
+  if (!fs::exists(folder / "run.json")) return pages;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".html" && is_run_page(entry.path()))
+      pages.push_back(entry.path().filename().string());
+  return pages;
+}
+
 /// The names that the records of a folder list, and those that are known by the records that are there.
 std::set<std::string> own_names(const fs::path& folder) {
   std::set<std::string> own{"run.json", "hazard.json", "part.json", OutputFolder::kWork, FolderLock::kName};
@@ -61,10 +71,7 @@ std::set<std::string> own_names(const fs::path& folder) {
   if (fs::exists(folder / "part.json")) own.insert("scenario.toml");
   if (fs::exists(folder / "calibration.json") || fs::exists(folder / "diagnosis.json"))
     own.insert(kFitFiles.begin(), kFitFiles.end());
-  if (fs::exists(folder / "run.json"))
-    for (const auto& entry : fs::directory_iterator(folder))
-      if (entry.path().extension() == ".html" && is_run_page(entry.path()))  // whatever `report -o` called it
-        own.insert(entry.path().filename().string());
+  for (std::string& name : pages_in(folder)) own.insert(std::move(name));
   for (std::string& name : files_of_designs(folder)) own.insert(std::move(name));
   return own;
 }
@@ -159,6 +166,16 @@ std::vector<std::string> foreign_in(const fs::path& folder) {
   }
   std::ranges::sort(foreign);
   return foreign;
+}
+
+std::vector<std::string> later_results(const fs::path& folder) {
+  std::vector<std::string> names;
+  if (!fs::exists(folder / "run.json")) return names;
+  if (fs::exists(folder / "hazard.json")) names = files_of_record(folder / "hazard.json");
+  for (std::string& name : files_of_designs(folder)) names.push_back(std::move(name));
+  for (std::string& name : pages_in(folder)) names.push_back(std::move(name));
+  std::ranges::sort(names);
+  return names;
 }
 
 }  // namespace talus::io

@@ -40,17 +40,19 @@ Context make_context() {
 
 struct Axis {
   double unit = 0.0;  // in metres, or in radians
-  std::string unit_name;
+  std::string unit_name, direction;
 };
 
 // An axis of a system; without a name of its unit if there is none of this index.
 Axis axis_of(PJ_CONTEXT* context, const PJ* system, int index) {
   const Object axes(proj_crs_get_coordinate_system(context, system));
   Axis axis;
-  const char* name = nullptr;
-  if (axes && proj_cs_get_axis_info(context, axes.get(), index, nullptr, nullptr, nullptr, &axis.unit, &name, nullptr,
-                                    nullptr) != 0)
+  const char *name = nullptr, *direction = nullptr;
+  if (axes && proj_cs_get_axis_info(context, axes.get(), index, nullptr, nullptr, &direction, &axis.unit, &name,
+                                    nullptr, nullptr) != 0) {
     axis.unit_name = name == nullptr ? "" : name;
+    axis.direction = direction == nullptr ? "" : direction;
+  }
   return axis;
 }
 
@@ -172,9 +174,15 @@ std::string scaling(const std::string& path, const MapExtent& e, double unit_x, 
 void check_heights(PJ_CONTEXT* context, const std::string& path, const std::string& wkt) {
   const Axis up = height_axis(context, wkt);
   if (!up.unit_name.empty() && !is_metre(up))
-    throw InputError(path + ": heights are in '" + up.unit_name + "' (coordinate system " + crs_name(wkt) +
-                     "), must be metres: convert them with gdal_calc.py --calc='A*" + text_of(up.unit) +
-                     "' --type=Float32 and give the result a system in metres with gdal_edit.py -a_srs");
+    throw InputError(
+        path + ": heights are in '" + up.unit_name + "' (coordinate system " + crs_name(wkt) +
+        "), must be metres: convert them with gdal_calc.py -A " + shell_word(path) + " --calc='A*" + text_of(up.unit) +
+        "' --type=Float32 --outfile=metres.tif and give the result a system in metres " + "with gdal_edit.py -a_srs");
+  if (up.direction == "down")
+    throw InputError(path + ": heights count downwards (coordinate system " + crs_name(wkt) +
+                     "), must count upwards: turn them round with gdal_calc.py -A " + shell_word(path) +
+                     " --calc='-A' --type=Float32 --outfile=heights.tif, and give the result a system of heights with "
+                     "gdal_edit.py -a_srs; or only the latter, if they are heights");
 }
 
 }  // namespace

@@ -272,6 +272,11 @@ void CsvStructure::check_header() const {
   for (auto column = columns_.begin(); column != columns_.end(); ++column)
     if (!column->empty() && std::find(columns_.begin(), column, *column) != column)
       refuse(row_line_, "column '" + *column + "' is there twice (in any case of letters), must be there once");
+  const auto has = [&](const char* name) { return std::ranges::count(columns_, name) > 0; };
+  for (const char* geometry : {"wkt", "geometry", "geom"})
+    if (has(geometry) && has("x") && has("y"))
+      refuse(row_line_, std::string("has the columns x and y beside ") + geometry +
+                            ", must say where a feature is in one way: leave out, or rename, the others");
 }
 
 void CsvStructure::finish() {

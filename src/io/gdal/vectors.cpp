@@ -340,7 +340,10 @@ class Placer {
       without_geometry_.add(name, source());
       return;
     }
-    out_.features.back().has_area = !parts.polygons.empty() && parts.lines.empty() && parts.points.empty();
+    SourceFeature& drawn = out_.features.back();
+    drawn.has_area = !parts.polygons.empty() && parts.lines.empty() && parts.points.empty();
+    drawn.drawn_area = 0.0;
+    for (const OGRPolygon& polygon : parts.polygons) drawn.drawn_area += polygon.get_Area();
     box_.Merge(parts.envelope());
     const Grid& grid = heights_.grid;
     std::uint64_t on_map = 0;

@@ -10,6 +10,7 @@
 #include "off_map.hpp"
 #include "pixels.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
@@ -153,6 +154,11 @@ void read_codes(GDALDataset& dataset, const ZoneRequest& request, const Terrain&
     wkt = terrain.geo.crs_wkt;
     out.warnings.push_back(dem_system_note(request.path, wkt));
   }
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  if (band.GetScale() != 1.0 || band.GetOffset() != 0.0)
+    throw InputError(request.path + ": has a scale or an offset (" + text_of(band.GetScale()) + ", " +
+                     text_of(band.GetOffset()) + "), codes of zones must be plain numbers: write them with " +
+                     "gdal_translate -unscale " + shell_word(request.path) + " zones.tif");
   Transformer transformer({"ground", request.path}, terrain.geo.crs_wkt, wkt, terrain.map());
   const PixelFinder pixel(dataset, request.path);
   PixelReader reader(dataset, request.path);

@@ -66,11 +66,18 @@ void read_barrier_lines(ScenarioSpec& spec, TableReader& barriers, const std::st
   const std::vector<TomlValue>* tables = tables_of(barriers, "line");
   if (tables == nullptr) return;
   spec.barrier_lines.clear();  // replaces those of an included file
+  std::vector<std::string> unbreakable;
   for (const TomlValue& item : *tables)
     if (auto line = read_line({&item, barriers.full("line"), barriers.file(), barriers.faults()})) {
       if (line->id.empty()) line->id = "line " + std::to_string(spec.barrier_lines.size() + 1);
+      if (item.find("capacity") == nullptr) unbreakable.push_back(line->id);
       spec.barrier_lines.push_back(std::move(*line));
     }
+  if (!unbreakable.empty())
+    spec.warnings.push_back(barriers.file() + ": " + barriers.full("line") + ": " + listed(unbreakable) +
+                            (unbreakable.size() == 1 ? " has" : " have") +
+                            " no capacity, so that nothing breaks it (unsafe for a net): give capacity in kJ, or "
+                            "capacity = inf for a dam");
   spec.origins["barriers.line"] = origin;
 }
 
@@ -123,8 +130,8 @@ std::string barrier_lines_text(const std::vector<BarrierLine>& lines) {
   std::vector<std::string> words;
   for (const BarrierLine& line : lines)
     words.push_back("{ id = " + toml_text(line.id) + ", height = " + text_of(line.height) +
-                    (std::isinf(line.capacity) ? "" : ", capacity = " + text_of(1e-3 * line.capacity)) +
-                    ", from = " + place_text(line.from) + ", to = " + place_text(line.to) + " }");
+                    ", capacity = " + text_of(1e-3 * line.capacity) + ", from = " + place_text(line.from) +
+                    ", to = " + place_text(line.to) + " }");
   return "[" + joined(words) + "]";
 }
 

@@ -81,6 +81,7 @@ void GroundReader::read(TableReader& ground) {
   }
   TableReader zones = ground.table("zones");
   if (zones.value() == nullptr) return;
+  refuse_two_defaults(ground, zones);
   if (zones.value()->find(kDefaultZone) != nullptr) read_zone(zones.table(kDefaultZone), spec_.default_ground);
   for (const auto& [name, value] : zones.value()->members) {
     if (name == kDefaultZone) continue;
@@ -89,11 +90,29 @@ void GroundReader::read(TableReader& ground) {
     ZoneSpec start = known == spec_.zones.end() ? spec_.default_ground : *known;
     if (known == spec_.zones.end()) start.code.clear(), start.intervals.clear();  // they belong to the default ground
     start.name = name;
+    if (known == spec_.zones.end()) warn_of_name(ground.file(), start, value);
     read_zone(zones.table(name), std::move(start));
   }
   if (spec_.zones.size() > 255)
     faults_.push_back(ground.file() + ": [ground.zones] has " + std::to_string(spec_.zones.size()) +
                       " zones, must be at most 255");
+}
+
+void GroundReader::refuse_two_defaults(TableReader& ground, const TableReader& zones) {
+  const TomlValue *one = ground.value()->find("default"), *zone = zones.value()->find(kDefaultZone);
+  const TomlValue* other = zone == nullptr || zone->kind != TomlValue::Kind::Table ? nullptr : zone->find("preset");
+  if (one == nullptr || other == nullptr || one->text == other->text) return;
+  ground.fault("default", *one,
+               "[ground.zones.default] preset is '" + other->text +
+                   "': both are the ground outside all zones, must be one: leave out the other");
+}
+
+void GroundReader::warn_of_name(const std::string& file, const ZoneSpec& zone, const TomlValue& table) {
+  if (table.find("preset") != nullptr || std::ranges::count(presets(), zone.name, &Preset::name) == 0) return;
+  spec_.warnings.push_back(file + ": [ground.zones." + zone.name +
+                           "] has no preset: what it does not give is that of " + "the default ground (" + zone.preset +
+                           "), not that of the preset of its name; give it " + "preset = \"" + zone.name +
+                           "\", or another name");
 }
 
 bool GroundReader::set_preset(TableReader& table, const std::string& key, const std::string& name, ZoneSpec& zone) {

@@ -38,6 +38,10 @@ class GroundReader {
   }
 
  private:
+  /// Adds a fault if one table gives the preset of the default ground twice, and not the same.
+  static void refuse_two_defaults(TableReader& ground, const TableReader& zones);
+  /// Warns of a new zone that is called as a preset, and is not of it.
+  void warn_of_name(const std::string& file, const ZoneSpec& zone, const TomlValue& table);
   bool set_preset(TableReader& table, const std::string& key, const std::string& name, ZoneSpec& zone);
   void read_zone(TableReader table, ZoneSpec zone);
   void store(ZoneSpec zone);

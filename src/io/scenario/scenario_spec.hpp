@@ -90,7 +90,7 @@ struct ScenarioSpec {
   FieldMap source_fields;
   std::optional<ProfileSpec> profile;          ///< of `talus profile`: there are no layers then
   Scenario values;                             ///< its settings; without terrain, sources and screens
-  std::vector<std::string> warnings;           ///< about flags that take the place of settings
+  std::vector<std::string> warnings;           ///< about settings that are not what they seem
   std::map<std::string, std::string> origins;  ///< of the keys that are given: "scenario", "flag --seed"
 
   /// The files that it names, with their roles in run.json: "dem", "effects.forest-stems.density".

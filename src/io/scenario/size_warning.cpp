@@ -62,6 +62,14 @@ std::string gain_warning(const std::vector<const ZoneSpec*>& grounds) {
          "are 1 to 1.5 (14 %)";
 }
 
+/// A line if the blocks have a shape that nothing reads; else empty.
+std::string axes_warning(const Scenario& scenario) {
+  const Vec3& axes = scenario.blocks.axes;
+  if (axes.x() == axes.z() || find_effect("block-shape")->acts(scenario.effects)) return {};
+  return "blocks.axes = [" + text_of(axes.x()) + ", " + text_of(axes.y()) + ", " + text_of(axes.z()) +
+         "]: only [effects.block-shape] reads the shape, and it is off: the blocks are spheres";
+}
+
 }  // namespace
 
 void warn_of_sizes(const ScenarioSpec& spec, const Scenario& scenario, std::vector<std::string>& warnings) {
@@ -75,9 +83,9 @@ void warn_of_sizes(const ScenarioSpec& spec, const Scenario& scenario, std::vect
     fitted.sizes = {sizes->low, sizes->high, {}};
     presets.push_back(&fitted);
   }
-  for (std::string& warning : std::vector<std::string>{size_warning(scenario, presets), guess_warning(presets),
-                                                       sorting_warning(scenario.effects), gain_warning(grounds),
-                                                       spec.profile ? std::string() : plane_warning(grounds)})
+  for (std::string& warning : std::vector<std::string>{
+           size_warning(scenario, presets), guess_warning(presets), sorting_warning(scenario.effects),
+           gain_warning(grounds), axes_warning(scenario), spec.profile ? std::string() : plane_warning(grounds)})
     if (!warning.empty()) warnings.push_back(std::move(warning));
   std::ranges::move(frequency_warnings(scenario), std::back_inserter(warnings));
 }

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kBits = 62;                    // of the sum over all trajectories of all rounds
 constexpr std::int64_t kLeastWeight = 1024;  // below it the unit would change a weight by more than 0.05 %
-constexpr std::string_view kOverlapWarning = "sources overlap: ";
+constexpr std::string_view kOverlapWarning = "sources overlap: ", kAreaWarning = "areas of sources: ";
 
 /// The inputs that give frequencies.
 struct Sources {
@@ -76,6 +76,12 @@ void check_contradictions(const Scenario& s, const Sources& found) {
     refuse(
         "a source is a point, which has no area; give the sources a field frequency and leave out per_area and "
         "by_true_area, or draw polygons");
+  if (found.area)
+    for (const SourceCell& cell : s.sources)
+      if (!s.features[cell.feature].has_area)
+        refuse(feature_name(s, cell.feature) +
+               " of the sources is no polygon, so that frequency.per_area would count the area of the cells that it "
+               "crosses; give the sources a field frequency instead, or draw polygons");
 }
 
 /// Events per year of volumes between two bounds, N(>= V) = A V^-b.
@@ -195,6 +201,24 @@ std::string overlap_warning(const Scenario& s) {
          ": join the features or cut one out of the other, unless each is meant to release its own blocks there";
 }
 
+/// One line for features whose cells cover another area than their polygons, where events are counted by area: polygons
+/// as wide as a few cells; empty if there are none.
+std::string area_warning(const Scenario& s) {
+  constexpr double kNoticed = 0.2;
+  if (std::isnan(s.frequency.per_area)) return {};
+  std::vector<double> covered(s.features.size());  // by feature [m^2]
+  for (const SourceCell& cell : s.sources) covered[cell.feature] += s.surface.grid().cell_x * s.surface.grid().cell_y;
+  std::vector<std::string> odd;
+  for (std::size_t i = 0; i < covered.size(); ++i)
+    if (std::abs(covered[i] - s.features[i].drawn_area) > kNoticed * s.features[i].drawn_area)
+      odd.push_back(feature_name(s, i) + " (" + readable(covered[i]) + " instead of " +
+                    readable(s.features[i].drawn_area) + " m2)");
+  if (odd.empty()) return {};
+  return std::string(kAreaWarning) +
+         "per_area counts the area of the cells that release blocks, which is not that of " +
+         "the polygons: " + listed(odd) + "; give these a field frequency, or take a finer DEM";
+}
+
 }  // namespace
 
 std::vector<double> class_frequencies(const Scenario& s) {
@@ -207,14 +231,14 @@ std::vector<double> class_frequencies(const Scenario& s) {
 }
 
 std::vector<std::string> frequency_warnings(const Scenario& s) {
-  std::vector<std::string> warnings{rare_class_warning(s), overlap_warning(s), retreat_warning(s)};
+  std::vector<std::string> warnings{rare_class_warning(s), overlap_warning(s), area_warning(s), retreat_warning(s)};
   std::erase(warnings, "");
   return warnings;
 }
 
 bool is_of_frequencies(const std::string& warning) {
-  return warning.starts_with(kOverlapWarning) || warning.starts_with(kRetreatWarning) ||
-         warning.find(kRareClasses) != std::string::npos;
+  return warning.starts_with(kOverlapWarning) || warning.starts_with(kAreaWarning) ||
+         warning.starts_with(kRetreatWarning) || warning.find(kRareClasses) != std::string::npos;
 }
 
 std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t rounds) {

@@ -41,13 +41,16 @@ std::vector<double> class_volumes(const Scenario& s) {
   return volumes;
 }
 
+bool is_of_polygon(const Scenario& s, const SourceCell& cell) {
+  return !cell.point && s.features[cell.feature].has_area;
+}
+
 /// Surface of the cells that polygons release, each counted once [m^2].
 double area_of_polygons(const Scenario& s) {
   const Grid& grid = s.surface.grid();
   std::vector<std::pair<int, int>> cells;  // row, column
   for (const SourceCell& cell : s.sources)
-    if (!cell.point && s.features[cell.feature].has_area)
-      cells.emplace_back(grid.row_of(cell.y), grid.column_of(cell.x));
+    if (is_of_polygon(s, cell)) cells.emplace_back(grid.row_of(cell.y), grid.column_of(cell.x));
   std::ranges::sort(cells);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   double area = 0.0;
@@ -55,26 +58,56 @@ double area_of_polygons(const Scenario& s) {
   return area;
 }
 
+/// By source cell: rock that falls from it [m^3/year].
+std::vector<double> annual_volumes(const Scenario& s, const AnnualWeights& weights) {
+  const std::vector<double> of_class = class_volumes(s);
+  std::vector<double> volumes(s.sources.size());
+  for (std::uint32_t source = 0; source < volumes.size(); ++source) {
+    const Range& own = s.features[s.sources[source].feature].diameter;
+    const auto events = [&](std::size_t block_class) {  // if all blocks were of this class [1/year]
+      return weights.of_class(source, block_class) * s.trajectories;
+    };
+    if (!std::isnan(own.low))
+      volumes[source] = events(0) * mean_volume(own);
+    else
+      for (std::size_t i = 0; i < of_class.size(); ++i) volumes[source] += events(i) * of_class[i];
+  }
+  return volumes;
+}
+
+/// The polygon whose rock face goes back fastest; nothing without polygons.
+struct FastestRetreat {
+  std::size_t feature = 0;
+  double volume = 0.0, area = 0.0;  ///< as AnnualRock::from_area and area, of this feature alone
+};
+
+std::optional<FastestRetreat> fastest_retreat(const Scenario& s, const AnnualWeights& weights) {
+  const std::vector<double> volumes = annual_volumes(s, weights);
+  const Grid& grid = s.surface.grid();
+  std::vector<FastestRetreat> of(s.features.size());
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    const SourceCell& cell = s.sources[i];
+    if (!is_of_polygon(s, cell)) continue;
+    of[cell.feature].feature = cell.feature;
+    of[cell.feature].volume += volumes[i];
+    of[cell.feature].area += true_area(s.surface.heights(), grid.column_of(cell.x), grid.row_of(cell.y));
+  }
+  std::erase_if(of, [](const FastestRetreat& r) { return !(r.area > 0.0); });
+  if (of.empty()) return std::nullopt;
+  return *std::ranges::max_element(of, {}, [](const FastestRetreat& r) { return r.volume / r.area; });
+}
+
 }  // namespace
 
 std::optional<AnnualRock> annual_rock(const Scenario& s) {
   const std::optional<AnnualWeights> weights = AnnualWeights::of(s);
   if (!weights) return std::nullopt;
-  const std::vector<double> volumes = class_volumes(s);
+  const std::vector<double> volumes = annual_volumes(s, *weights);
   AnnualRock rock;
   rock.events = weights->scale().total;
-  for (std::uint32_t source = 0; source < s.sources.size(); ++source) {
-    const SourceFeature& feature = s.features[s.sources[source].feature];
-    const auto events = [&](std::size_t block_class) {  // if all blocks were of this class [1/year]
-      return weights->of_class(source, block_class) * s.trajectories;
-    };
-    double volume = 0.0;
-    if (!std::isnan(feature.diameter.low))
-      volume = events(0) * mean_volume(feature.diameter);
-    else
-      for (std::size_t i = 0; i < volumes.size(); ++i) volume += events(i) * volumes[i];
-    rock.volume += volume;
-    if (!s.sources[source].point && feature.has_area) rock.from_area += volume;
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    rock.volume += volumes[i];
+    if (is_of_polygon(s, s.sources[i])) rock.from_area += volumes[i];
   }
   rock.area = area_of_polygons(s);
   return rock;
@@ -86,11 +119,15 @@ std::string retreat_text(double metres_per_year) {
 }
 
 std::string retreat_warning(const Scenario& scenario) {
-  const std::optional<AnnualRock> rock = annual_rock(scenario);
-  if (!rock || !(rock->retreat() > kUnlikely * kMuchRetreat)) return {};
-  return kRetreatWarning + readable(rock->from_area) + " m3 of rock a year fall from polygons of " +
-         readable(rock->area) + " m2 of surface, which would go back by " + retreat_text(rock->retreat()) + "; " +
-         retreat_text(kMuchRetreat) +
+  const std::optional<AnnualWeights> weights = AnnualWeights::of(scenario);
+  if (!weights) return {};
+  const auto fastest = fastest_retreat(scenario, *weights);
+  if (!fastest || !(fastest->volume > kUnlikely * kMuchRetreat * fastest->area)) return {};
+  const std::string& name = scenario.features[fastest->feature].name;
+  const std::string which = scenario.features.size() == 1 ? "" : name.empty() ? "a feature, " : "'" + name + "', ";
+  return kRetreatWarning + readable(fastest->volume) + " m3 of rock a year fall from " + which + "a polygon of " +
+         readable(fastest->area) + " m2 of surface, which would go back by " +
+         retreat_text(fastest->volume / fastest->area) + "; " + retreat_text(kMuchRetreat) +
          " is much in the Alps: check the unit of the frequencies (events per year; per_area: per m2, not per "
          "hectare) and the diameters";
 }

@@ -49,6 +49,10 @@ class OutputFolder {
   /// Throws InputError if `file` lies in a folder that `commit` would replace: an input must not be deleted.
   void protect(const std::filesystem::path& file) const;
 
+  /// Names of files that later commands (hazard, barrier, report) have added to the results that `commit` would
+  /// replace.
+  std::vector<std::string> later_results() const;
+
   /// Brings all files to the disk and gives the folder its name, if that is still free or may be overwritten. An
   /// earlier result is moved aside first, put back if the rename fails, and removed last. Throws std::runtime_error.
   void commit();

@@ -248,6 +248,22 @@ TEST(FrequencyWarnings, CellsOfSeveralFeatures) {
   EXPECT_TRUE(frequency_warnings(s).empty());
 }
 
+/// A polygon of 1 m2 whose cell has 4 m2, and one of two cells that is as large as these.
+TEST(FrequencyWarnings, CellsOfAnotherAreaThanTheirPolygon) {
+  Scenario s = plane(60.0, {0, 1, 1});
+  s.blocks.classes = {{{0.1, 0.1}, 1.0}};
+  s.features[0].drawn_area = 1.0, s.features[1].drawn_area = 8.0;
+  s.frequency.total = 1.0;
+  EXPECT_TRUE(frequency_warnings(s).empty());
+  s.frequency = {};
+  s.frequency.per_area = 0.1;
+  const std::vector<std::string> warnings = frequency_warnings(s);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings.front(),
+              testing::HasSubstr("that of the polygons: feature number 0 (from 0) (4 instead of 1 m2);"));
+  EXPECT_TRUE(is_of_frequencies(warnings.front()));
+}
+
 TEST(AnnualWeights, Contradictions) {
   Scenario s = plane(30.0, {0, 1});
   s.features[0].frequency = 0.3;
@@ -255,6 +271,10 @@ TEST(AnnualWeights, Contradictions) {
   s.features[1].frequency = 0.1;
   s.frequency.per_area = 1.0;
   refused(s, "is given by the field frequency of the sources, frequency.per_area, must be given by one");
+  s = plane(30.0, {0});
+  s.frequency.per_area = 1.0;
+  s.features[0].has_area = false;
+  refused(s, "feature number 0 (from 0) of the sources is no polygon");
   s = plane(30.0, {0});
   s.frequency.by_true_area = true;
   refused(s, "nothing says how often");

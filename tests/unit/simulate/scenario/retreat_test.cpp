@@ -106,9 +106,23 @@ TEST(RetreatWarning, ComesWhereEventsPerHectareWereTypedAsPerSquareMetre) {
   EXPECT_EQ(retreat_warning(s), "");
   s.frequency.per_area = 10.0;
   EXPECT_THAT(retreat_warning(s),
-              testing::StartsWith("frequencies: 200 m3 of rock a year fall from polygons of 80 m2 of "
+              testing::StartsWith("frequencies: 200 m3 of rock a year fall from a polygon of 80 m2 of "
                                   "surface, which would go back by 2.5 m a year; 2 mm a year is"));
   EXPECT_TRUE(is_of_frequencies(retreat_warning(s)));
+}
+
+/// The cliff of 80 m2 with 100 m3 a year, and beside it one of 80 m2 with almost none: it is not averaged out.
+TEST(RetreatWarning, IsOfThePolygonThatGoesBackFastest) {
+  Scenario s = cliff();
+  const double diameter = std::cbrt(6.0 / kPi);  // 1 m3
+  s.features.assign(2, {.name = "quiet", .frequency = 1e-6, .diameter = {diameter, diameter}});
+  for (int i = 0; i < 10; ++i) s.sources.push_back({1, 5.0 + 2.0 * i, 11.0, false});
+  EXPECT_EQ(retreat_warning(s), "");
+  s.features[1].name = "wrong", s.features[1].frequency = 100.0;
+  EXPECT_THAT(
+      retreat_warning(s),
+      testing::StartsWith("frequencies: 100 m3 of rock a year fall from 'wrong', a polygon of 80 m2 of surface, "
+                          "which would go back by 1.25 m a year;"));
 }
 
 }  // namespace
