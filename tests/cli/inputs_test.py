@@ -592,6 +592,14 @@ class OffTheDem(InputCase):
         self.assertNotIn("zones.gpkg: zones", self.run_well("check", *self.flags(), *self.zones(inside)).stdout)
         self.refused("zones.gpkg: lies wholly off the DEM: its features reach over", ", the DEM over", more=self.zones(off, off))
 
+    def test_a_zone_under_a_later_one(self):
+        shapes = [(box(0, 0, 300, 100), ["forest-road-3d"]), (box(0, 0, 300, 200), ["lower-talus-3d"])]
+        for rows, said in ((shapes, True), (shapes[::-1], False)):
+            write_features(self.path("zones.gpkg"), "zones", rows, [("zone", ogr.OFTString)])
+            plan = self.run_well("check", *self.flags(), "--zones", self.path("zones.gpkg")).stdout
+            text = "zones wholly under later ones, which have no effect: FID 1 (forest-road-3d): the last in the file counts"
+            self.assertEqual(text in plan, said, plan)
+
     def test_a_raster_of_zones(self):
         self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1.2\n'
                              '[ground]\nfile = "zones.tif"\n[ground.zones.1]\npreset = "forest-road-3d"\n')

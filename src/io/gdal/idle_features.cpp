@@ -1,6 +1,7 @@
 #include "idle_features.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "talus/base/text.hpp"
@@ -26,14 +27,17 @@ void IdleFeatures::mark(const std::string& name, const Parts& feature, const std
   box_.Merge(box);
   if (box.MaxX <= 0.0 || box.MinX >= grid.width() || box.MaxY <= 0.0 || box.MinY >= grid.height())
     return off_.push_back(name);
-  const CoveredCells covered = mark_cells(feature, value(), terrain_, cells);
+  const std::uint8_t given = value();
+  const CoveredCells covered = mark_cells(feature, given, terrain_, cells);
   if (covered.all == 0)
     narrow_.push_back(name);
   else if (covered.with_height == 0)
     without_height_.push_back(name);
+  else if (given != 0)
+    marked_.emplace_back(name, given);
 }
 
-void IdleFeatures::warn(std::vector<std::string>& warnings) const {
+void IdleFeatures::warn(const Raster<std::uint8_t>& cells, std::vector<std::string>& warnings) const {
   const auto add = [&](const std::vector<std::string>& names, const std::string& what, const std::string& way_out) {
     if (!names.empty()) warnings.push_back(path_ + ": " + kind_ + " " + what + ": FID " + listed(names) + way_out);
   };
@@ -41,6 +45,13 @@ void IdleFeatures::warn(std::vector<std::string>& warnings) const {
   add(without_geometry_, "without geometry, which have no effect", "");
   add(off_, "wholly off the DEM, which have no effect", "");
   add(without_height_, "where the DEM has no heights, which have no effect", "");
+  std::array<bool, 256> left{};
+  if (!marked_.empty())
+    for (const std::uint8_t value : cells.values) left[value] = true;
+  std::vector<std::string> under;
+  for (const auto& [name, value] : marked_)
+    if (!left[value]) under.push_back(name);
+  add(under, "wholly under later ones, which have no effect", ": the last in the file counts");
   add(narrow_, "that cover no cell of the DEM (its centre counts) and have no effect",
       ": draw them wider than a cell, " + with_digits(std::max(grid.cell_x, grid.cell_y), 3) + " m");
 }

@@ -36,13 +36,15 @@ class IdleFeatures {
   /// The box around all features that have a geometry [m, local].
   const OGREnvelope& box() const { return box_; }
   /// A line for each way in which features have no effect.
-  void warn(std::vector<std::string>& warnings) const;
+  /// @param cells  as `mark` has left them
+  void warn(const Raster<std::uint8_t>& cells, std::vector<std::string>& warnings) const;
 
  private:
   std::string path_, kind_;
   const Terrain& terrain_;
   OGREnvelope box_;
   std::vector<std::string> without_geometry_, off_, narrow_, without_height_;
+  std::vector<std::pair<std::string, std::uint8_t>> marked_;  // names and values of the others
 };
 
 }  // namespace talus::io

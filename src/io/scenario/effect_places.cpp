@@ -26,7 +26,7 @@ Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path,
     idle.mark(
         std::to_string(feature->GetFID()), polygons, [] { return std::uint8_t{1}; }, mask);
   });
-  idle.warn(out.warnings);
+  idle.warn(mask, out.warnings);
   layer.tell(out);
   return mask;
 }
