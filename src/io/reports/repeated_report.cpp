@@ -107,8 +107,7 @@ std::string far_ground_warning(const FittedModel& base, const std::string& way_o
              with_decimals(std::abs(base.z[i]), 1);
   if (far.empty()) return "";
   return "the fitted ground is far from its start (" + far +
-         " standard deviations of the prior), which holds it back: place and instrument may be blamed falsely; " +
-         way_out;
+         " standard deviations of the prior), which holds it back: the instruments may be blamed falsely; " + way_out;
 }
 
 std::string folds_text(const NestedValidation& nested) {
