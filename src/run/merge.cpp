@@ -111,6 +111,7 @@ Outcome merge(const MergeRequest& request, Observer& observer) {
   observer.inputs_read();
   io::OutputFolder folder(request.out, request.overwrite);
   protect_inputs(folder, request, loaded);
+  say_later_results(folder, observer);
   const Scenario& scenario = loaded.scenario;
   Tally tally = tally_of(scenario, checkpoints.front().asked().at_most(), memory);
   io::RunRecord record = new_record(request, loaded, threads);

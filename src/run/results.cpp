@@ -171,6 +171,13 @@ StopFigures write_maps_and_vectors(const ResultSource& source, const Observer& o
 
 }  // namespace
 
+void say_later_results(const io::OutputFolder& folder, Observer& observer) {
+  const std::vector<std::string> lost = folder.later_results();
+  if (!lost.empty())
+    observer.message("note: --overwrite will also remove what later commands have written into " +
+                     folder.final_path().string() + ": " + listed(lost));
+}
+
 void write_results(const ResultSource& source, Observer& observer, Stopwatch& watch, io::RunRecord& record) {
   malloc_trim(0);  // frees the memory of the workers' batches before the maps need it
   const LoadedScenario& loaded = source.loaded;

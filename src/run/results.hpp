@@ -17,6 +17,9 @@ struct ResultSource {
   std::filesystem::path final_folder;  ///< its name when it is complete
 };
 
+/// Says which results of later commands (hazard, barrier, report) go with an earlier run that is replaced.
+void say_later_results(const io::OutputFolder& folder, Observer& observer);
+
 /// Writes every result: maps from the tally, vectors from the rows in the checkpoints. Fills the record.
 void write_results(const ResultSource& source, Observer& observer, Stopwatch& watch, io::RunRecord& record);
 

@@ -155,11 +155,9 @@ void RunSession::make_folder() {
                                                  request_.resume ? Unfinished::Resume : Unfinished::Refuse);
     for (const io::InputFile& input : plan_.loaded.inputs)  // scenario.toml of an earlier run may be replaced
       if (fs::path(input.path) != folder_->final_path() / "scenario.toml") folder_->protect(input.path);
-    if (request_.resume && !fs::exists(folder_->work() / kCheckpointManifest))
-      observer_.message("note: there is no interrupted run to resume in " + request_.out + ": the run begins anew");
-    if (const auto lost = folder_->later_results(); !lost.empty())
-      observer_.message("note: --overwrite will also remove what later commands have written into " + request_.out +
-                        ": " + listed(lost));
+    if (request_.resume && !request_.part && !fs::exists(folder_->work() / kCheckpointManifest))
+      observer_.message("note: nothing is saved that could be resumed in " + request_.out + ": the run begins");
+    say_later_results(*folder_, observer_);
   });
 }
 

@@ -68,7 +68,7 @@ class Again(RunCase):
 
     def test_nothing_to_resume(self):
         done = self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "--resume")  # a name that was mistyped
-        self.assertIn("note: there is no interrupted run to resume in " + self.path("out") + ": the run begins anew", done.stderr)
+        self.assertIn("note: nothing is saved that could be resumed in " + self.path("out") + ": the run begins", done.stderr)
 
     def test_a_run_that_is_done(self):
         self.run_scenario("out")

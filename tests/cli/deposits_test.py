@@ -145,8 +145,8 @@ class Score(Deposits):
         write_features(self.path("mapped.gpkg"), "mapped", [(box(100, 10, 100, 280), [])])
         self.deposits(self.rows + [["up", str(WEST + 150), str(NORTH - 30), "0.5"]])
         done = self.run_well("score", self.path("campaign.toml"), "--parameters", self.model, "--trials", "10")
-        self.assertIn("1 of 51 blocks lie higher than every source of ", done.stderr)
-        self.assertIn(" m: up; no block can get there", done.stderr)
+        self.assertIn("1 of 51 blocks lie higher than any release from ", done.stderr)
+        self.assertIn(" m at most: up; no block can get there", done.stderr)
 
     def test_blocks_outside_the_polygons_are_left_out_and_said(self):
         self.deposits(self.rows + [["far", str(WEST + 20), str(NORTH - 200), "0.5"]])

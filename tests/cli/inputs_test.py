@@ -597,7 +597,7 @@ class OffTheDem(InputCase):
         for rows, said in ((shapes, True), (shapes[::-1], False)):
             write_features(self.path("zones.gpkg"), "zones", rows, [("zone", ogr.OFTString)])
             plan = self.run_well("check", *self.flags(), "--zones", self.path("zones.gpkg")).stdout
-            text = "zones wholly under later ones, which have no effect: FID 1 (forest-road-3d): the last in the file counts"
+            text = "zones of a kind of which later ones leave no cell, which have no effect: FID 1 (forest-road-3d): the last in the file counts"
             self.assertEqual(text in plan, said, plan)
 
     def test_a_raster_of_zones(self):
@@ -615,7 +615,9 @@ class OffTheDem(InputCase):
 
     def test_codes_of_zones_with_an_offset(self):
         write_dem(self.path("zones.tif"), np.ones((60, 60)))
-        gdal.Open(self.path("zones.tif"), gdal.GA_Update).GetRasterBand(1).SetOffset(1)
+        zones = gdal.Open(self.path("zones.tif"), gdal.GA_Update)
+        zones.GetRasterBand(1).SetOffset(1)
+        zones = None
         self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1.2\n'
                              '[ground]\nfile = "zones.tif"\n[ground.zones.1]\npreset = "forest-road-3d"\n')
         self.fails(2, "zones.tif: has a scale or an offset (1, 1)", "gdal_translate -unscale", arguments=["check", self.path("s.toml")])
@@ -628,11 +630,11 @@ class OffTheDem(InputCase):
         self.zones(box(0, 0, 300, 100))
         for text, said in (('[ground]\nfile = "zones.gpkg"\n' + road + 'phi = 40\n', "[ground.zones.forest-road-3d] has no preset"),
                            ('[ground]\nfile = "zones.gpkg"\n' + road + 'phi = 40\npreset = "forest-road-3d"\n', ""),
-                           (net.replace("CAPACITY", ""), "barriers.line: net has no capacity, so that nothing breaks it (unsafe for a net)"),
+                           (net.replace("CAPACITY", ""), "barriers.line: no capacity is given of net, so that nothing breaks through (unsafe for a net)"),
                            (net.replace("CAPACITY", ", capacity = inf"), ""),
                            ("axes = [3, 2, 1]\n", "blocks.axes = [3, 2, 1]: only [effects.block-shape] reads the shape")):
             plan = self.run_well("check", self.write("s.toml", head + text)).stdout
-            for words in ("has no preset", "has no capacity", "reads the shape"):
+            for words in ("has no preset", "no capacity is given", "reads the shape"):
                 self.assertEqual(words in plan, words in said, plan)
             self.assertIn(said, plan)
         self.write("s.toml", head + '[ground]\ndefault = "lower-talus-3d"\n[ground.zones.default]\npreset = "forest-road-3d"\n')

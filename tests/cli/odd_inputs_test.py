@@ -331,7 +331,7 @@ class Options(OneThread, Case):
                             (("--allow-folder", "there is no folder"), ["--allow-folder", self.path("file")]),
                             (("--thresholds", "'30,,300' has an empty item"), ["--thresholds", "30,,300"]),
                             (("--thresholds", "'30,' has an empty item"), ["--thresholds=30,"]),
-                            (("--thresholds is given 2 times", "once, as --thresholds 30,300"),
+                            (("--thresholds is given 2 times", "give it once, its items with commas"),
                              ["--thresholds", "30", "--thresholds=300"])):
             self.fails(2, *words, arguments=[*self.arguments(), *more])
         for item in ("", " "):

@@ -390,7 +390,7 @@ class Messages(Profile):
         for nodes, said in ((down, False), ([(120 - x, z) for x, z in reversed(down)], True)):
             self.nodes(*nodes)
             self.scenario("x = 60")
-            text = "the profile falls lower before the sources (to 0.0 m) than behind them (to "
+            text = "the profile falls to 0.0 m at a smaller x than the sources, and to "
             self.assertEqual(text in self.told("--trajectories", "5"), said)
         self.fails(2, "out: is of a profile, which has no maps", arguments=["hazard", self.path("out")])
 

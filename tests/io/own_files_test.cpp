@@ -48,6 +48,14 @@ TEST_F(OwnFiles, PagesOfTheReportByWhatTheyHold) {
   file("out/page.txt", page);
   file("out/mine.html", "<p>mine</p>");
   EXPECT_EQ(foreign(), (Names{"mine.html", "page.txt"}));
+  EXPECT_EQ(later_results(path("out")), (Names{"for the canton.html", "report.html"}));
+  file("out/hazard.json", R"({"files": ["hazard_class.tif"]})");
+  file("out/energy.tif");
+  file("out/barrier_road.json", R"({"program": "talus", "screen": "road"})");
+  const Names later = later_results(path("out"));
+  for (const char* name : {"hazard_class.tif", "barrier_road.json", "report.html"})
+    EXPECT_EQ(std::ranges::count(later, name), 1) << name;
+  EXPECT_EQ(later.size(), 4U);
 }
 
 TEST_F(OwnFiles, OfPartsAndFitsAreKnownByTheirNames) {
@@ -78,7 +86,5 @@ TEST_F(OwnFiles, WhatReadersLeaveBesideAFileIsRemovedWithoutTheFile) {
   std::ranges::sort(left);
   EXPECT_EQ(left, (Names{"a.tif", "a.tif.aux.xml", "b.gpkg", "b.gpkg.bak", "c.gpkg-wal"}));
 }
-
-TEST(ShownNames, AreTheFirstFive) {}
 
 }  // namespace talus::io::test

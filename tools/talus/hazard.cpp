@@ -90,8 +90,8 @@ std::vector<std::string> warnings_of(const talus::io::HazardHeader& header) {
   const double left = talus::io::left_per_year(header), all = header.rules.scale.total;
   if (!(left > talus::io::kWarnedLeftShare * all)) return {};
   return {talus::with_digits(left, 3) + " of the " + talus::with_digits(all, 3) + " events per year (" +
-          talus::with_digits(100.0 * left / all, 3) +
-          " %) leave the DEM or meet missing data: beyond the cells marked in band `cut short` of hazard_class.tif the "
+          talus::percent(left / all) +
+          ") leave the DEM or meet missing data: beyond the cells marked in band `cut short` of hazard_class.tif the "
           "hazard goes on, and the map does not show it; run again with a larger DEM, or with "
           "the holes inside it filled (left_into_gaps in run.json counts the blocks that leave into them)"};
 }

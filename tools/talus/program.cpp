@@ -179,8 +179,8 @@ void refuse_odd_lists(const CLI::App& command) {
       if ((comma + list + comma).find(comma + comma) != std::string::npos)
         throw talus::InputError(name + ": '" + list + "' has an empty item" + help);
     if (lists.size() > 1)
-      throw talus::InputError(name + " is given " + std::to_string(lists.size()) + " times: must be once, as " + name +
-                              " " + lists[0] + comma + lists[1] + help);
+      throw talus::InputError(name + " is given " + std::to_string(lists.size()) +
+                              " times: give it once, its items with commas between them" + help);
   }
 }
 

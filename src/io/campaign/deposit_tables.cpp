@@ -170,7 +170,10 @@ void keep_mapped(const DepositSpec& spec, const MappedDeposits& deposits, std::v
 void warn_of_higher_blocks(const DepositSpec& spec, const MappedDeposits& deposits, const Terrain& terrain,
                            const std::vector<MeasuredBlock>& blocks, std::vector<std::string>& warnings) {
   double highest = -std::numeric_limits<double>::infinity();
-  for (const DepositSource& source : deposits.sources) highest = std::max(highest, source.place.z());
+  for (const DepositSource& source : deposits.sources) {
+    const double up = std::max(0.0, source.velocity.z());
+    highest = std::max(highest, source.place.z() + source.release_height.high + up * up / (2.0 * kGravity));
+  }
   const Grid& grid = terrain.heights.grid;
   std::vector<std::string> higher;
   for (const MeasuredBlock& block : blocks)
@@ -178,8 +181,8 @@ void warn_of_higher_blocks(const DepositSpec& spec, const MappedDeposits& deposi
       higher.push_back(block.id);
   if (higher.empty()) return;
   warnings.push_back(spec.table.path + ": " + std::to_string(higher.size()) + " of " + std::to_string(blocks.size()) +
-                     " blocks lie higher than every source of " + spec.sources.path + ", the highest of which is at " +
-                     with_digits(highest, 4) + " m: " + listed(higher) +
+                     " blocks lie higher than any release from " + spec.sources.path + ", at " +
+                     with_digits(highest, 4) + " m at most: " + listed(higher) +
                      "; no block can get there: is a cliff missing, or are the coordinates wrong?");
 }
 

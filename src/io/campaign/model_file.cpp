@@ -165,6 +165,7 @@ Model read_model(const std::string& path, const Campaign& campaign, std::vector<
   if (!faults.empty()) throw InputFaults(faults, faults.size());
   const SurfaceKind kind = campaign.surface.kind();
   if (warnings != nullptr) {
+    warnings->insert(warnings->end(), spec.warnings.begin(), spec.warnings.end());
     warn_of_undescribed_zones(spec, campaign, path, *warnings);
     warn_of_other_terrain(
         spec, campaign.surface.grid(), kind, path, "the campaign is simulated",

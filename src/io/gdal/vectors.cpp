@@ -411,6 +411,7 @@ class Placer {
     if (missing == on_map) return without_height_.add(name, source());
     const double outside = share_outside(parts, heights_.grid);
     const double hole = (1.0 - outside) * static_cast<double>(missing) / static_cast<double>(on_map);
+    out_.features.back().drawn_area *= std::max(0.0, 1.0 - outside - hole);
     if (outside + hole >= kNoticed)
       lacks_.push_back({kind_of(parts) + (" " + name), outside, hole, source().frequency});
   }

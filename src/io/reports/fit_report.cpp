@@ -154,8 +154,8 @@ std::string distribution_lines(const Comparison& comparison) {
       text += " | " + std::to_string(measured ? d.measured_count : d.simulated_count) + " |\n";
     }
   for (const CrossingShare& s : comparison.crossings)
-    text += "\nCrossed " + s.screen + ": " + with_digits(100.0 * s.measured, 3) + " % of the blocks, " +
-            with_digits(100.0 * s.simulated, 3) + " % of the simulated ones.\n";
+    text += "\nCrossed " + s.screen + ": " + percent(s.measured) + " of the blocks, " + percent(s.simulated) +
+            " of the simulated ones.\n";
   return text;
 }
 

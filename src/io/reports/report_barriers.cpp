@@ -132,7 +132,7 @@ Markup limits_table(const BarrierPart& part) {
       "law</th><th>once in</th></tr>\n"_html;
   for (const BarrierPart::Limit& l : part.limits)
     html += "<tr><td>"_html + l.quantity + "</td><td>" + l.name + " = " + with_digits(l.value, 4) + " " + l.unit +
-            "</td><td>" + with_digits(100.0 * l.share, 3) + " % [" + with_digits(100.0 * l.share_low, 3) + ", " +
+            "</td><td>" + percent(l.share) + " [" + with_digits(100.0 * l.share_low, 3) + ", " +
             with_digits(100.0 * l.share_high, 3) + "]</td><td>" + percent(l.weibull) +
             (l.agrees ? "" : " (the law does not fit: use the share)") + "</td><td>" + once_in(l) + "</td></tr>\n";
   return html + "</table>\n";

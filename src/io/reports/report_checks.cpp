@@ -150,7 +150,7 @@ void check_numbers(const CheckedRun& checked, Checks& checks) {
     const auto hits = static_cast<std::uint64_t>(std::llround(p * run.released));
     if (released == 0 || hits == 0 || hits > released) return;
     const Interval i = probability_bounds(hits, released, kConfidence);
-    found += "; " + where + ": " + with_digits(100.0 * p, 3) + " % [" + with_digits(100.0 * i.low, 3) + ", " +
+    found += "; " + where + ": " + percent(p) + " [" + with_digits(100.0 * i.low, 3) + ", " +
              with_digits(100.0 * i.high, 3) + "]";
     few = few || i.high - i.low > 0.4 * p;
   };

@@ -69,8 +69,8 @@ Markup row_html(const ScreensPart::Row& row) {
   };
   return "<tr><td>"_html + row.screen + "</td><td>" + row.quantity + " [" + row.unit + "]</td><td class='n'>" +
          grouped(row.crossings) + "</td><td class='n'>" + grouped(row.blocks) + "</td><td class='n'>" +
-         with_digits(100.0 * row.share, 3) + " %</td>" + figure(row.p50) + figure(row.p95) + figure(row.p99) +
-         figure(row.maximum) + "</tr>\n";
+         percent(row.share) + "</td>" + figure(row.p50) + figure(row.p95) + figure(row.p99) + figure(row.maximum) +
+         "</tr>\n";
 }
 
 }  // namespace

@@ -66,18 +66,12 @@ void read_barrier_lines(ScenarioSpec& spec, TableReader& barriers, const std::st
   const std::vector<TomlValue>* tables = tables_of(barriers, "line");
   if (tables == nullptr) return;
   spec.barrier_lines.clear();  // replaces those of an included file
-  std::vector<std::string> unbreakable;
   for (const TomlValue& item : *tables)
     if (auto line = read_line({&item, barriers.full("line"), barriers.file(), barriers.faults()})) {
       if (line->id.empty()) line->id = "line " + std::to_string(spec.barrier_lines.size() + 1);
-      if (item.find("capacity") == nullptr) unbreakable.push_back(line->id);
+      line->says_capacity = item.find("capacity") != nullptr;
       spec.barrier_lines.push_back(std::move(*line));
     }
-  if (!unbreakable.empty())
-    spec.warnings.push_back(barriers.file() + ": " + barriers.full("line") + ": " + listed(unbreakable) +
-                            (unbreakable.size() == 1 ? " has" : " have") +
-                            " no capacity, so that nothing breaks it (unsafe for a net): give capacity in kJ, or "
-                            "capacity = inf for a dam");
   spec.origins["barriers.line"] = origin;
 }
 
@@ -112,6 +106,16 @@ void warn_of_unlikely_barriers(std::span<const Barrier> barriers, std::vector<st
                        text_of(kMostHeight) +
                        " m, more than any net: is the capacity in J, or is it a dam? Give kJ and m, and a dam the "
                        "capacity inf");
+}
+
+void warn_of_unsaid_capacities(const std::vector<BarrierLine>& lines, std::vector<std::string>& warnings) {
+  std::vector<std::string> unbreakable;
+  for (const BarrierLine& line : lines)
+    if (!line.says_capacity) unbreakable.push_back(line.id);
+  if (!unbreakable.empty())
+    warnings.push_back("barriers.line: no capacity is given of " + listed(unbreakable) +
+                       ", so that nothing breaks through (unsafe for a net): give capacity in kJ, or capacity = inf "
+                       "for a dam");
 }
 
 void warn_of_equal_ids(std::span<const Barrier> barriers, std::vector<std::string>& warnings) {

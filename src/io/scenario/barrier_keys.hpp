@@ -13,6 +13,9 @@ void read_barrier_lines(ScenarioSpec& spec, TableReader& barriers, const std::st
 /// Reads [[instrument_bias]] of a model into spec.instrument_bias.
 void read_instrument_bias(ScenarioSpec& spec, TableReader& top);
 
+/// Warns of lines without a capacity.
+void warn_of_unsaid_capacities(const std::vector<BarrierLine>& lines, std::vector<std::string>& warnings);
+
 /// Warns of barriers that stop more than any net, or are higher: in J, or a dam. Silent where the capacity is infinite.
 void warn_of_unlikely_barriers(std::span<const Barrier> barriers, std::vector<std::string>& warnings);
 

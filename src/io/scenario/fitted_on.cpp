@@ -26,10 +26,17 @@ void warn_of_other_terrain(const ScenarioSpec& spec, const Grid& grid, SurfaceKi
                      "farther: take a DEM of like cells, or fit again");
 }
 
+bool uses_fit(const ScenarioSpec& spec) {
+  const auto of_fit = [](const ZoneSpec& zone) {
+    return std::ranges::any_of(zone.own, [](const auto& number) { return number.second != "scenario"; });
+  };
+  return of_fit(spec.default_ground) || std::ranges::any_of(spec.zones, of_fit);
+}
+
 void warn_of_other_coefficient(const ScenarioSpec& spec, std::vector<std::string>& warnings) {
   const std::optional<double>& fitted = spec.fitted_on.deformation_coefficient;
   const double here = spec.values.impact.deformation_coefficient;
-  if (!fitted || here == *fitted) return;
+  if (!fitted || here == *fitted || !uses_fit(spec)) return;
   warnings.push_back(spec.include.where + ": was fitted with the deformation coefficient c = " + text_of(*fitted) +
                      ", and this run takes " + text_of(here) + " (" + spec.origin("model.deformation_coefficient") +
                      "): a fitted ground holds only for the c of its fit: fit it again with this c, in [model] of the "

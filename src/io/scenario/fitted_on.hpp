@@ -16,6 +16,9 @@ namespace talus::io {
 void warn_of_other_terrain(const ScenarioSpec& spec, const Grid& grid, SurfaceKind kind, const std::string& where,
                            const std::string& used, const std::string& remedy, std::vector<std::string>& warnings);
 
+/// Whether a ground of the scenario has a number of the included model.
+bool uses_fit(const ScenarioSpec& spec);
+
 /// Warns where a run changes c of the impact law under a ground that was fitted with another one.
 void warn_of_other_coefficient(const ScenarioSpec& spec, std::vector<std::string>& warnings);
 

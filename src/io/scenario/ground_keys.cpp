@@ -90,8 +90,9 @@ void GroundReader::read(TableReader& ground) {
     ZoneSpec start = known == spec_.zones.end() ? spec_.default_ground : *known;
     if (known == spec_.zones.end()) start.code.clear(), start.intervals.clear();  // they belong to the default ground
     start.name = name;
-    if (known == spec_.zones.end()) warn_of_name(ground.file(), start, value);
+    const bool is_new = known == spec_.zones.end();
     read_zone(zones.table(name), std::move(start));
+    if (is_new) warn_of_name(ground.file(), spec_.zones.back(), value);
   }
   if (spec_.zones.size() > 255)
     faults_.push_back(ground.file() + ": [ground.zones] has " + std::to_string(spec_.zones.size()) +
@@ -108,11 +109,11 @@ void GroundReader::refuse_two_defaults(TableReader& ground, const TableReader& z
 }
 
 void GroundReader::warn_of_name(const std::string& file, const ZoneSpec& zone, const TomlValue& table) {
-  if (table.find("preset") != nullptr || std::ranges::count(presets(), zone.name, &Preset::name) == 0) return;
-  spec_.warnings.push_back(file + ": [ground.zones." + zone.name +
-                           "] has no preset: what it does not give is that of " + "the default ground (" + zone.preset +
-                           "), not that of the preset of its name; give it " + "preset = \"" + zone.name +
-                           "\", or another name");
+  const bool is_of_itself = table.find("preset") != nullptr || zone.gives_all();
+  if (is_of_itself || std::ranges::count(presets(), zone.name, &Preset::name) == 0) return;
+  spec_.warnings.push_back(
+      file + ": [ground.zones." + zone.name + "] has no preset: what it does not give is that of the default ground (" +
+      zone.preset + "), not that of the preset of its name; give it preset = \"" + zone.name + "\", or another name");
 }
 
 bool GroundReader::set_preset(TableReader& table, const std::string& key, const std::string& name, ZoneSpec& zone) {

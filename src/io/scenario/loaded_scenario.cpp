@@ -114,6 +114,7 @@ void load_barriers(const ScenarioSpec& spec, const Terrain& terrain, Scenario& p
   for (const BarrierLine& line : spec.barrier_lines) layer.barriers.push_back(barrier_of(line, terrain.heights.grid));
   warn_of_barriers_off("barriers.line (" + spec.origin("barriers.line") + ")",
                        std::span(layer.barriers).subspan(of_layer), terrain, out.warnings);
+  warn_of_unsaid_capacities(spec.barrier_lines, out.warnings);
   warn_of_unlikely_barriers(layer.barriers, out.warnings);
   warn_of_equal_ids(layer.barriers, out.warnings);
   parts.barriers = Barriers(std::move(layer.barriers));

@@ -48,18 +48,18 @@ void check_before_end(const ProfileSpec& p, const Grid& grid, const std::string&
                      text_of(last) + " m at most, the last column of the profile (step = " + text_of(p.step) + " m)");
 }
 
-/// Warns of a profile that falls from its sources towards its start, as one that was drawn upwards.
+/// Warns of a profile that falls from its sources towards its start, as one that was drawn from the bottom up.
 void warn_of_direction(const ProfileSpec& p, const Profile& profile, std::vector<std::string>& warnings) {
-  double before = profile.height(p.source.low), after = profile.height(p.source.high);  // lowest, on each side
+  double uphill = profile.height(p.source.low), downhill = profile.height(p.source.high);  // lowest, on each side
   for (const Eigen::Vector2d& node : profile.nodes) {
-    if (node.x() < p.source.low) before = std::min(before, node.y());
-    if (node.x() > p.source.high) after = std::min(after, node.y());
+    if (node.x() < p.source.low) uphill = std::min(uphill, node.y());
+    if (node.x() > p.source.high) downhill = std::min(downhill, node.y());
   }
-  if (!(before < after)) return;
-  warnings.push_back("the profile falls lower before the sources (to " + with_decimals(before, 1) + " m) than behind " +
-                     "them (to " + with_decimals(after, 1) +
-                     " m): is it drawn from the top down? x grows downhill, and blocks that fall towards its start "
-                     "leave it there");
+  if (!(uphill < downhill)) return;
+  warnings.push_back("the profile falls to " + with_decimals(uphill, 1) +
+                     " m at a smaller x than the sources, and to " + with_decimals(downhill, 1) +
+                     " m at a larger x: it seems drawn from the bottom up, must be drawn from the top down (x grows "
+                     "downhill)");
 }
 
 void place_sources(const ScenarioSpec& spec, const Profile& profile, const Grid& grid, Scenario& parts) {

@@ -46,6 +46,7 @@ struct BarrierLine {
   double height = 0.0;    ///< [m]
   double capacity = 0.0;  ///< [J]; infinite if none is given
   Eigen::Vector2d from, to;
+  bool says_capacity = true;
 };
 
 /// Share of the value by which an instrument of a campaign reads too high. It says nothing about the terrain.

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "fitted_on.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
@@ -79,8 +80,8 @@ void warn_of_sizes(const ScenarioSpec& spec, const Scenario& scenario, std::vect
     if (from_preset(*zone, "theta_scale") || from_preset(*zone, "En50")) presets.push_back(&find_preset(zone->preset));
   const std::string file = std::filesystem::path(spec.include.path).filename().string();
   Preset fitted{.name = file, .ground = {}, .source = {}, .where = {}, .sizes = {}};
-  if (const std::optional<Range>& sizes = spec.fitted_on.diameters) {
-    fitted.sizes = {sizes->low, sizes->high, {}};
+  if (const std::optional<Range>& sizes = spec.fitted_on.diameters; sizes && uses_fit(spec)) {
+    fitted.sizes = {sizes->low, sizes->high, {}, true, true};
     presets.push_back(&fitted);
   }
   for (std::string& warning : std::vector<std::string>{

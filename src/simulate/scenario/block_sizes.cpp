@@ -83,7 +83,8 @@ std::string size_warning(const Scenario& scenario, std::span<const Preset* const
   for (const Preset* preset : presets) {
     const FittedSizes& sizes = preset->sizes;
     if (!sizes.fitted) continue;  // `guess_warning`
-    const bool over = above(sizes, diameters), under = below(sizes, diameters) || (sizes.known() && break_up);
+    const bool over = above(sizes, diameters),
+               under = below(sizes, diameters) || (sizes.known() && !sizes.of_pieces && break_up);
     if (sizes.known() && !over && !under) continue;
     larger = larger || over, smaller = smaller || under;
     strange.push_back(std::string(preset->name) + " (" +

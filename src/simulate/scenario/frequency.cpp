@@ -79,9 +79,10 @@ void check_contradictions(const Scenario& s, const Sources& found) {
   if (found.area)
     for (const SourceCell& cell : s.sources)
       if (!s.features[cell.feature].has_area)
-        refuse(feature_name(s, cell.feature) +
-               " of the sources is no polygon, so that frequency.per_area would count the area of the cells that it "
-               "crosses; give the sources a field frequency instead, or draw polygons");
+        refuse(
+            feature_name(s, cell.feature) +
+            " of the sources is not of polygons alone, so that frequency.per_area would count the area of cells that "
+            "a line crosses; give the sources a field frequency instead, or draw polygons");
 }
 
 /// Events per year of volumes between two bounds, N(>= V) = A V^-b.
@@ -201,22 +202,23 @@ std::string overlap_warning(const Scenario& s) {
          ": join the features or cut one out of the other, unless each is meant to release its own blocks there";
 }
 
-/// One line for features whose cells cover another area than their polygons, where events are counted by area: polygons
-/// as wide as a few cells; empty if there are none.
+/// One line for features whose cells cover twice or half the area of their polygons, where events are counted by area:
+/// polygons narrower than a few cells; empty if there are none.
 std::string area_warning(const Scenario& s) {
-  constexpr double kNoticed = 0.2;
+  constexpr double kNoticed = 2.0;
   if (std::isnan(s.frequency.per_area)) return {};
   std::vector<double> covered(s.features.size());  // by feature [m^2]
   for (const SourceCell& cell : s.sources) covered[cell.feature] += s.surface.grid().cell_x * s.surface.grid().cell_y;
   std::vector<std::string> odd;
-  for (std::size_t i = 0; i < covered.size(); ++i)
-    if (std::abs(covered[i] - s.features[i].drawn_area) > kNoticed * s.features[i].drawn_area)
-      odd.push_back(feature_name(s, i) + " (" + readable(covered[i]) + " instead of " +
-                    readable(s.features[i].drawn_area) + " m2)");
+  for (std::size_t i = 0; i < covered.size(); ++i) {
+    const double drawn = s.features[i].drawn_area;
+    if (covered[i] > 0.0 && (covered[i] > kNoticed * drawn || drawn > kNoticed * covered[i]))
+      odd.push_back(feature_name(s, i) + " (" + readable(covered[i]) + " instead of " + readable(drawn) + " m2)");
+  }
   if (odd.empty()) return {};
   return std::string(kAreaWarning) +
-         "per_area counts the area of the cells that release blocks, which is not that of " +
-         "the polygons: " + listed(odd) + "; give these a field frequency, or take a finer DEM";
+         "per_area counts the area of the cells that release blocks, which is far from that of the polygons: " +
+         listed(odd) + "; give each feature a field frequency, or take a finer DEM";
 }
 
 }  // namespace

@@ -30,17 +30,25 @@ double mean_volume(const VolumePowerLaw& law) {
   return b * law.volume.low * sum / -std::expm1(-b * span);
 }
 
-/// By class of blocks: its share of the blocks times its mean volume [m^3].
-std::vector<double> class_volumes(const Scenario& s) {
-  if (s.blocks.classes.empty()) return {mean_volume(s.blocks.power_law)};
+/// By class of blocks: its share of the blocks.
+std::vector<double> class_shares(const Scenario& s) {
+  if (s.blocks.classes.empty()) return {1.0};
   double weights = 0.0;
   for (const BlockClass& block : s.blocks.classes) weights += block.weight;
+  std::vector<double> shares;
+  for (const BlockClass& block : s.blocks.classes) shares.push_back(block.weight / weights);
+  return shares;
+}
+
+/// By class of blocks: its mean volume [m^3].
+std::vector<double> class_volumes(const Scenario& s) {
+  if (s.blocks.classes.empty()) return {mean_volume(s.blocks.power_law)};
   std::vector<double> volumes;
-  for (const BlockClass& block : s.blocks.classes)
-    volumes.push_back(block.weight / weights * mean_volume(block.diameter));
+  for (const BlockClass& block : s.blocks.classes) volumes.push_back(mean_volume(block.diameter));
   return volumes;
 }
 
+/// Whether a place of release is a cell of a feature that is drawn as polygons.
 bool is_of_polygon(const Scenario& s, const SourceCell& cell) {
   return !cell.point && s.features[cell.feature].has_area;
 }
@@ -58,43 +66,52 @@ double area_of_polygons(const Scenario& s) {
   return area;
 }
 
-/// By source cell: rock that falls from it [m^3/year].
-std::vector<double> annual_volumes(const Scenario& s, const AnnualWeights& weights) {
-  const std::vector<double> of_class = class_volumes(s);
-  std::vector<double> volumes(s.sources.size());
-  for (std::uint32_t source = 0; source < volumes.size(); ++source) {
+/// What falls from a source cell, or from all of a feature, in a year.
+struct Fall {
+  double events = 0.0, volume = 0.0;  // [1/year], [m^3/year]
+  void add(const Fall& other) { events += other.events, volume += other.volume; }
+};
+
+/// By source cell.
+std::vector<Fall> annual_falls(const Scenario& s, const AnnualWeights& weights) {
+  const std::vector<double> shares = class_shares(s), volumes = class_volumes(s);
+  std::vector<Fall> falls(s.sources.size());
+  for (std::uint32_t source = 0; source < falls.size(); ++source) {
     const Range& own = s.features[s.sources[source].feature].diameter;
     const auto events = [&](std::size_t block_class) {  // if all blocks were of this class [1/year]
       return weights.of_class(source, block_class) * s.trajectories;
     };
     if (!std::isnan(own.low))
-      volumes[source] = events(0) * mean_volume(own);
+      falls[source] = {events(0), events(0) * mean_volume(own)};
     else
-      for (std::size_t i = 0; i < of_class.size(); ++i) volumes[source] += events(i) * of_class[i];
+      for (std::size_t i = 0; i < volumes.size(); ++i)
+        falls[source].add({events(i) * shares[i], events(i) * shares[i] * volumes[i]});
   }
-  return volumes;
+  return falls;
 }
 
-/// The polygon whose rock face goes back fastest; nothing without polygons.
-struct FastestRetreat {
-  std::size_t feature = 0;
-  double volume = 0.0, area = 0.0;  ///< as AnnualRock::from_area and area, of this feature alone
+/// A polygon, or several together, whose rock face goes back.
+struct RockFace {
+  std::string name;
+  Fall fall;
+  double area = 0.0;  // of the surface of its cells [m^2]
+  double retreat() const { return fall.volume / area; }
 };
 
-std::optional<FastestRetreat> fastest_retreat(const Scenario& s, const AnnualWeights& weights) {
-  const std::vector<double> volumes = annual_volumes(s, weights);
+/// By feature; only those of polygons.
+std::vector<RockFace> rock_faces(const Scenario& s, const std::vector<Fall>& falls) {
   const Grid& grid = s.surface.grid();
-  std::vector<FastestRetreat> of(s.features.size());
-  for (std::size_t i = 0; i < volumes.size(); ++i) {
+  std::vector<RockFace> faces(s.features.size());
+  for (std::size_t i = 0; i < falls.size(); ++i) {
     const SourceCell& cell = s.sources[i];
     if (!is_of_polygon(s, cell)) continue;
-    of[cell.feature].feature = cell.feature;
-    of[cell.feature].volume += volumes[i];
-    of[cell.feature].area += true_area(s.surface.heights(), grid.column_of(cell.x), grid.row_of(cell.y));
+    RockFace& face = faces[cell.feature];
+    face.name = s.features[cell.feature].name;
+    face.fall.add(falls[i]);
+    face.area += true_area(s.surface.heights(), grid.column_of(cell.x), grid.row_of(cell.y));
   }
-  std::erase_if(of, [](const FastestRetreat& r) { return !(r.area > 0.0); });
-  if (of.empty()) return std::nullopt;
-  return *std::ranges::max_element(of, {}, [](const FastestRetreat& r) { return r.volume / r.area; });
+  std::erase_if(faces, [](const RockFace& face) { return !(face.area > 0.0); });
+  return faces;
 }
 
 }  // namespace
@@ -102,12 +119,12 @@ std::optional<FastestRetreat> fastest_retreat(const Scenario& s, const AnnualWei
 std::optional<AnnualRock> annual_rock(const Scenario& s) {
   const std::optional<AnnualWeights> weights = AnnualWeights::of(s);
   if (!weights) return std::nullopt;
-  const std::vector<double> volumes = annual_volumes(s, *weights);
+  const std::vector<Fall> falls = annual_falls(s, *weights);
   AnnualRock rock;
   rock.events = weights->scale().total;
-  for (std::size_t i = 0; i < volumes.size(); ++i) {
-    rock.volume += volumes[i];
-    if (is_of_polygon(s, s.sources[i])) rock.from_area += volumes[i];
+  for (std::size_t i = 0; i < falls.size(); ++i) {
+    rock.volume += falls[i].volume;
+    if (is_of_polygon(s, s.sources[i])) rock.from_area += falls[i].volume;
   }
   rock.area = area_of_polygons(s);
   return rock;
@@ -121,13 +138,18 @@ std::string retreat_text(double metres_per_year) {
 std::string retreat_warning(const Scenario& scenario) {
   const std::optional<AnnualWeights> weights = AnnualWeights::of(scenario);
   if (!weights) return {};
-  const auto fastest = fastest_retreat(scenario, *weights);
-  if (!fastest || !(fastest->volume > kUnlikely * kMuchRetreat * fastest->area)) return {};
-  const std::string& name = scenario.features[fastest->feature].name;
-  const std::string which = scenario.features.size() == 1 ? "" : name.empty() ? "a feature, " : "'" + name + "', ";
-  return kRetreatWarning + readable(fastest->volume) + " m3 of rock a year fall from " + which + "a polygon of " +
-         readable(fastest->area) + " m2 of surface, which would go back by " +
-         retreat_text(fastest->volume / fastest->area) + "; " + retreat_text(kMuchRetreat) +
+  const std::vector<RockFace> faces = rock_faces(scenario, annual_falls(scenario, *weights));
+  RockFace worst;  // all together, or the one of several blocks a year that goes back fastest
+  for (const RockFace& face : faces) worst.fall.add(face.fall);
+  worst.area = area_of_polygons(scenario);
+  for (const RockFace& face : faces)
+    if (face.fall.events > 1.0 && face.retreat() > worst.retreat()) worst = face;
+  if (!(worst.retreat() > kUnlikely * kMuchRetreat)) return {};
+  const std::string where = worst.name.empty()
+                                ? "the polygons, " + readable(worst.area) + " m2 of surface, which"
+                                : "the polygon '" + worst.name + "', " + readable(worst.area) + " m2 of surface, which";
+  return kRetreatWarning + readable(worst.fall.volume) + " m3 of rock a year fall from " + where +
+         " would go back by " + retreat_text(worst.retreat()) + "; " + retreat_text(kMuchRetreat) +
          " is much in the Alps: check the unit of the frequencies (events per year; per_area: per m2, not per "
          "hectare) and the diameters";
 }

@@ -7,14 +7,7 @@
 #include "talus/base/text.hpp"
 
 namespace talus {
-namespace {
-
-/// A number beside its key, as a scenario writes it: three digits, large ones whole.
-std::string whole_or_short(double number) {
-  return std::abs(number) >= 999.5 ? with_decimals(number, 0) : with_digits(number, 3);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 void Spread::add(double value) {
   low = std::min(low, value), high = std::max(high, value), sum += value;
@@ -22,8 +15,8 @@ void Spread::add(double value) {
 }
 
 std::string Spread::text() const {
-  const std::string first = whole_or_short(low), last = whole_or_short(high);
-  return first == last ? first : first + " to " + last + " (mean " + whole_or_short(mean()) + ")";
+  const std::string first = with_digits(low, 3), last = with_digits(high, 3);
+  return first == last ? first : first + " to " + last + " (mean " + with_digits(mean(), 3) + ")";
 }
 
 void Median::add(double value) {

@@ -235,7 +235,7 @@ def above_limit(found, effect, magnitude):
     for limit in found["detection_limits"]:
         if limit["effect"] != effect:
             continue
-        amount = next((p["amount"] for p in limit["places"] if p["where"] == PLACES.get(effect)), limit["amount"])
+        amount = next((p["amount"] for p in limit["places"] if p["where"] == PLACES.get(effect, "everywhere")), limit["amount"])
         key = limit["parameter"].split(".")[-1]
         size = EFFECTS[effect][key.removeprefix("1/")][0]
         return amount is not None and (magnitude / size if key.startswith("1/") else magnitude * size) >= amount
@@ -286,8 +286,9 @@ def report(table):
     for name in names:
         print(f"| {name} | " + " | ".join(str(counts[name, f] or "") for f in found) + " |")
     none = [r for r in table if r["effect"].startswith("none")]
-    for kind in sorted({r["effect"] for r in none}):
-        of = [r for r in none if r["effect"] == kind]
+    kinds = sorted({r["effect"] for r in none})
+    for kind in kinds + ["all without an effect"] * (len(kinds) > 1):
+        of = [r for r in none if kind not in kinds or r["effect"] == kind]
         alarms = sum(r["found"] not in ("none", "unexplained") for r in of)
         print(f"\n{kind}: false alarms: {alarms} of {len(of)}, unexplained: {sum(r['found'] == 'unexplained' for r in of)}")
         if "again found" in of[0]:

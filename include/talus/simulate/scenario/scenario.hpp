@@ -26,7 +26,7 @@ struct SourceFeature {
   Vec3 velocity = Vec3::Zero();          ///< at the release [m/s]
   std::int64_t id = -1;                  ///< number in its file (FID); -1: of no file
   bool has_area = true;                  ///< drawn as polygons alone: its cells are an area of rock
-  double drawn_area = kNotGiven;         ///< of its polygons, in plan [m^2]; NaN: not known
+  double drawn_area = kNotGiven;         ///< of its polygons where the DEM has heights, in plan [m^2]; NaN: not known
 };
 
 /// One place of release: a cell of the grid, or a point of its own.

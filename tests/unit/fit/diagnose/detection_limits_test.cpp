@@ -49,7 +49,7 @@ TEST(DetectionLimits, AreOfAParameterThatCanShowTheEffect) {
   EXPECT_DOUBLE_EQ(limits[0].amount, 0.99);
 }
 
-/// Two places of which the second measures the drag best, and one of them joined, which is no place of its own.
+/// Two places, of which the second measures the drag best.
 TEST(DetectionLimits, AreGivenForEachPlace) {
   std::vector<Candidate> candidates{drag(), drag()};
   candidates[1].where = "zone meadow";
@@ -216,8 +216,12 @@ TEST(FurtherScreens, RaiseNoLimit) {
   for (const DetectionLimit& limit : limits) {
     if (std::isnan(limit.amount)) continue;
     ++finite;
-    for (const auto& [where, amount] : limit.places)
+    std::set<std::string> places;
+    for (const auto& [where, amount] : limit.places) {
+      EXPECT_TRUE(places.insert(where).second)
+          << limit.effect << ": joined places are no places of their own: " << where;
       if (!std::isnan(amount)) EXPECT_LE(std::abs(limit.amount - limit.off), std::abs(amount - limit.off)) << where;
+    }
     EXPECT_LE(std::abs(limit.with_further_speeds - limit.off), 1.05 * std::abs(limit.amount - limit.off))
         << limit.effect << ' ' << limit.key;
   }

@@ -274,7 +274,7 @@ TEST(AnnualWeights, Contradictions) {
   s = plane(30.0, {0});
   s.frequency.per_area = 1.0;
   s.features[0].has_area = false;
-  refused(s, "feature number 0 (from 0) of the sources is no polygon");
+  refused(s, "feature number 0 (from 0) of the sources is not of polygons alone");
   s = plane(30.0, {0});
   s.frequency.by_true_area = true;
   refused(s, "nothing says how often");

@@ -106,7 +106,7 @@ TEST(RetreatWarning, ComesWhereEventsPerHectareWereTypedAsPerSquareMetre) {
   EXPECT_EQ(retreat_warning(s), "");
   s.frequency.per_area = 10.0;
   EXPECT_THAT(retreat_warning(s),
-              testing::StartsWith("frequencies: 200 m3 of rock a year fall from a polygon of 80 m2 of "
+              testing::StartsWith("frequencies: 200 m3 of rock a year fall from the polygons, 80 m2 of "
                                   "surface, which would go back by 2.5 m a year; 2 mm a year is"));
   EXPECT_TRUE(is_of_frequencies(retreat_warning(s)));
 }
@@ -119,10 +119,27 @@ TEST(RetreatWarning, IsOfThePolygonThatGoesBackFastest) {
   for (int i = 0; i < 10; ++i) s.sources.push_back({1, 5.0 + 2.0 * i, 11.0, false});
   EXPECT_EQ(retreat_warning(s), "");
   s.features[1].name = "wrong", s.features[1].frequency = 100.0;
-  EXPECT_THAT(
-      retreat_warning(s),
-      testing::StartsWith("frequencies: 100 m3 of rock a year fall from 'wrong', a polygon of 80 m2 of surface, "
-                          "which would go back by 1.25 m a year;"));
+  EXPECT_THAT(retreat_warning(s),
+              testing::StartsWith("frequencies: 100 m3 of rock a year fall from the polygon 'wrong', 80 m2 of surface, "
+                                  "which would go back by 1.25 m a year;"));
+}
+
+/// Two features on the same cells, each of 6 m3 a year from 80 m2: 0.075 m a year each, 0.15 together. One block a year
+/// from a small polygon is no wrong unit.
+TEST(RetreatWarning, AddsFeaturesOfTheSameCellsAndAllowsOneBlockAYear) {
+  Scenario s = cliff();
+  const double diameter = std::cbrt(6.0 / kPi);  // 1 m3
+  s.features.assign(1, {.frequency = 6.0, .diameter = {diameter, diameter}});
+  EXPECT_EQ(retreat_warning(s), "");
+  s.features.assign(2, s.features[0]);
+  for (int i = 0; i < 10; ++i) s.sources.push_back({1, 5.0 + 2.0 * i, 7.0, false});
+  EXPECT_THAT(retreat_warning(s), testing::HasSubstr("12 m3 of rock a year fall from the polygons, 80 m2"));
+  const double large = std::cbrt(4.0 * 6.0 / kPi);  // 4 m3, once a year from a cell of 8 m2, beside 80 m2 without
+  s.features[0].frequency = 0.0;
+  s.features[1] = {.frequency = 1.0, .diameter = {large, large}};
+  s.sources.resize(10);
+  s.sources.push_back({1, 35.0, 7.0, false});
+  EXPECT_EQ(retreat_warning(s), "");
 }
 
 }  // namespace
