@@ -172,6 +172,21 @@ OddCells odd_cells(const std::string& path) {
   return structure ? structure->odd_cells() : OddCells{};
 }
 
+bool has_geometry_column(const std::string& path) {
+  const File file = opened(without_prefix(path));
+  if (!file) return false;
+  std::string piece(std::size_t{1} << 16, '\0');
+  piece.resize(VSIFReadL(piece.data(), 1, piece.size(), file.get()));
+  std::string_view header = piece;
+  if (header.starts_with("\xEF\xBB\xBF")) header.remove_prefix(3);  // byte order mark
+  header = header.substr(0, header.find_first_of("\r\n"));
+  CsvStructure structure(path, header);
+  structure.take(header);
+  structure.finish();
+  return std::ranges::any_of(kGeometryColumns,
+                             [&](const char* name) { return std::ranges::count(structure.columns(), name) > 0; });
+}
+
 CsvStructure::CsvStructure(std::string path, std::string_view header)
     : path_(std::move(path)), separator_(separator_of(header)) {}
 
@@ -272,11 +287,6 @@ void CsvStructure::check_header() const {
   for (auto column = columns_.begin(); column != columns_.end(); ++column)
     if (!column->empty() && std::find(columns_.begin(), column, *column) != column)
       refuse(row_line_, "column '" + *column + "' is there twice (in any case of letters), must be there once");
-  const auto has = [&](const char* name) { return std::ranges::count(columns_, name) > 0; };
-  for (const char* geometry : {"wkt", "geometry", "geom"})
-    if (has(geometry) && has("x") && has("y"))
-      refuse(row_line_, std::string("has the columns x and y beside ") + geometry +
-                            ", must say where a feature is in one way: leave out, or rename, the others");
 }
 
 void CsvStructure::finish() {
