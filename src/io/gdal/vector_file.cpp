@@ -177,12 +177,10 @@ bool has_geometry_column(const std::string& path) {
   if (!file) return false;
   std::string piece(std::size_t{1} << 16, '\0');
   piece.resize(VSIFReadL(piece.data(), 1, piece.size(), file.get()));
-  std::string_view header = piece;
-  if (header.starts_with("\xEF\xBB\xBF")) header.remove_prefix(3);  // byte order mark
-  header = header.substr(0, header.find_first_of("\r\n"));
-  CsvStructure structure(path, header);
-  structure.take(header);
-  structure.finish();
+  std::string_view text = piece;
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
+  CsvStructure structure(path, text.substr(0, text.find_first_of("\r\n")));
+  structure.take(text);
   return std::ranges::any_of(kGeometryColumns,
                              [&](const char* name) { return std::ranges::count(structure.columns(), name) > 0; });
 }
