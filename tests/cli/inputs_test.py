@@ -337,7 +337,7 @@ class Tables(InputCase):
         ring = ", ".join(f"{X + dx} {Y + dy}" for dx, dy in ((0, 0), (20, 0), (20, 20), (0, 20), (0, 0)))
         for columns in ("x,y,WKT", "x,y,geom"):  # also where they are numbers: one point was read instead of 16 cells
             said = self.run_well("check", *self.flags(self.table(f'{columns}\n{X},{Y},"POLYGON (({ring}))"\n'))).stdout
-            self.assertIn("1 features, 16 source cells", said)
+            self.assertIn("1 feature, 16 source cells", said)
         self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1\n[effects.forest-stems]\n'
                    'trees = "t.csv"\n')
         self.table(f"x,y,diameter\n{X},{Y},0.3\n{X}m,{Y},0.3\n")

@@ -251,7 +251,7 @@ TEST(DiagnosisWarnings, OfFewBlocksAndFewTrials) {
 }
 
 /// A prior holds back a ground that is far from its start: 2 standard deviations of a normal prior are rare (5 %), and
-/// in docs/diagnosis-results.md, "Nothing to be found: 60 campaigns", false alarms are more frequent there.
+/// in docs/diagnosis-results.md, "Nothing to be found", false alarms are more frequent there.
 TEST(DiagnosisWarnings, OfAGroundFarFromItsStart) {
   DiagnosisRecord record = record_of(0.05, 0.01);
   FittedModel& base = record.diagnosis.base;
