@@ -177,7 +177,7 @@ void check_heights(PJ_CONTEXT* context, const std::string& path, const std::stri
     throw InputError(
         path + ": heights are in '" + up.unit_name + "' (coordinate system " + crs_name(wkt) +
         "), must be metres: convert them with gdal_calc.py -A " + shell_word(path) + " --calc='A*" + text_of(up.unit) +
-        "' --type=Float32 --outfile=metres.tif and give the result a system in metres " + "with gdal_edit.py -a_srs");
+        "' --type=Float32 --outfile=metres.tif and give the result a system in metres with gdal_edit.py -a_srs");
   if (up.direction == "down")
     throw InputError(path + ": heights count downwards (coordinate system " + crs_name(wkt) +
                      "), must count upwards: turn them round with gdal_calc.py -A " + shell_word(path) +

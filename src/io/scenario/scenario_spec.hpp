@@ -46,7 +46,7 @@ struct BarrierLine {
   double height = 0.0;    ///< [m]
   double capacity = 0.0;  ///< [J]; infinite if none is given
   Eigen::Vector2d from, to;
-  bool says_capacity = true;
+  bool says_capacity = true;  ///< whether the file gives one
 };
 
 /// Share of the value by which an instrument of a campaign reads too high. It says nothing about the terrain.

@@ -78,9 +78,10 @@ struct SettledModel {
 };
 
 /// Moves the free parameters of a fitted model (ground, and effects found so far) in Newton steps, until the residual
-/// that the score test takes has little left that they could explain; of the places on the way the one with the
-/// smallest statistic. A fit ends elsewhere: its objective is another one, and its prior holds it back. The signatures
-/// are those of small changes, so that what a large one would explain is left over at the fit and taken for an effect.
+/// that the score test takes has little left that they could explain, each halved where it does not help; of the places
+/// on the way the one with the smallest statistic. A fit ends elsewhere: its objective is another one, and its prior
+/// holds it back. The signatures are those of small changes, so that what a large one would explain is left over at the
+/// fit and taken for an effect.
 ///
 /// @param simulated  makes the runs of a moved model as TestedModel::runs were made
 /// Throws FitInterrupted when `options.proceed` returns false. Source: docs/diagnosis-method.md, "The score test".

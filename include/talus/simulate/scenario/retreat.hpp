@@ -31,8 +31,9 @@ inline constexpr double kMuchRetreat = 2e-3;
 /// How the warning below begins, in run.json, too.
 inline constexpr const char* kRetreatWarning = "frequencies: ";
 
-/// One line if the rock face in a polygon would go back by more than 50 times what is much, as where events per hectare
-/// were typed for events per m2: of the polygon that goes back fastest; empty if none does.
+/// One line if the rock face would go back by more than 50 times what is much, as where events per hectare were typed
+/// for events per m2: that of all polygons together, or of one that releases more than one block a year; empty if none
+/// does.
 std::string retreat_warning(const Scenario& scenario);
 
 }  // namespace talus
