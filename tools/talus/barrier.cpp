@@ -110,11 +110,11 @@ CrossingTable simulated_crossings(const RunSummary& run, const BarrierOptions& o
                             o.screen + "', screens_summary.csv beside it says " + std::to_string(*in_summary) +
                             ": must be as talus run has written it; copy it again, or run the scenario again");
   if (crossings.count == 0)
-    throw talus::InputError(file.string() + ": no block crosses screen '" + o.screen + "': " +
-                            (gap || left
-                                 ? "this does not say that a barrier is not needed there: " + (gap ? *gap : *left)
-                                 : "a barrier is not needed there, or the line lies uphill of the sources, or barriers "
-                                   "of the run catch the blocks before it, or the run has too few trajectories to say"));
+    throw talus::InputError(
+        file.string() + ": no block crosses screen '" + o.screen + "': " +
+        (gap || left ? "this does not say that a barrier is not needed there: " + (gap ? *gap : *left)
+                     : "a barrier is not needed there, or the line lies uphill of the sources, or barriers "
+                       "of the run catch the blocks before it, or the run has too few trajectories to say"));
   for (const std::size_t told : {crossings.speed.size(), crossings.energy.size(), crossings.height.size(),
                                  crossings.mass.size(), crossings.places.size()})
     if (told != crossings.count)
@@ -373,9 +373,8 @@ void add_design(BarrierReport& report, std::span<const talus::LineCrossing> cros
   report.block_from = o.volume ? "--volume" : "the largest that crosses";
   report.block = rule.of(crossings);
   if (o.volume)
-    if (const auto note = volume_note(*o.volume, talus::DesignBlockRule{{}, rule.density, rule.rock_density}
-                                                     .of(crossings)
-                                                     .volume))
+    if (const auto note =
+            volume_note(*o.volume, talus::DesignBlockRule{{}, rule.density, rule.rock_density}.of(crossings).volume))
       report.notes.push_back(*note);
   report.design = talus::design_barrier(crossings, report.block, report.factors);
   report.longest = o.stretch;
