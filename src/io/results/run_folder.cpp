@@ -121,7 +121,8 @@ std::optional<std::string> coefficient_note(double c) {
   return "energies and jumps may be too low (unsafe): c = " + text_of(c) +
          " (model.deformation_coefficient) is not given by the paper, and a lower c raises both. With the ground of "
          "a preset run with --deformation-coefficient 0.15 as well and take the higher values; a fitted ground holds "
-         "for its own c alone: unless speeds were measured, fit it again with 0.15: docs/barrier.md, \"The value of c\"";
+         "for its own c alone: unless speeds were measured, fit it again with 0.15: "
+         "docs/barrier.md, \"The value of c\"";
 }
 
 std::string barriers_text(std::size_t barriers, const std::string& caught, bool pieces) {
