@@ -601,7 +601,7 @@ class OffTheDem(InputCase):
         for rows, said in ((shapes, True), (shapes[::-1], False)):
             write_features(self.path("zones.gpkg"), "zones", rows, [("zone", ogr.OFTString)])
             plan = self.run_well("check", *self.flags(), "--zones", self.path("zones.gpkg")).stdout
-            text = "zones of a kind of which later ones leave no cell, which have no effect: FID 1 (forest-road-3d): the last in the file counts"
+            text = "zones covered by later ones, so that none of their name is left: FID 1 (forest-road-3d): the last in the file counts"
             self.assertEqual(text in plan, said, plan)
 
     def test_a_raster_of_zones(self):

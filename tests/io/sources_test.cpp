@@ -40,6 +40,14 @@ TEST_F(Sources, APolygonGivesTheCellsWhoseCentresItCoversFromTheNorthWest) {
   EXPECT_TRUE(layer.reprojections.empty());
 }
 
+/// 60 m x 20 m, the western half of which lies off the DEM; a line has no area.
+TEST_F(Sources, TheDrawnAreaIsThatOnTheDem) {
+  EXPECT_NEAR(read({{"POLYGON((-30 0,30 0,30 20,-30 20,-30 0))"}}).features[0].drawn_area, 600.0, 1e-6);
+  const SourceLayer line = read({{"LINESTRING(5 5,35 5)"}});
+  EXPECT_EQ(line.features[0].drawn_area, 0.0);
+  EXPECT_FALSE(line.features[0].has_area);
+}
+
 TEST_F(Sources, ACentreOnAnEdgeBelongsToOneOfTwoPolygons) {  // squares of 30 m whose edges are lines of centres
   const auto square = [](double west, double south) {
     const auto at = [](double x, double y) { return std::to_string(x) + " " + std::to_string(y); };

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Of --width.
+/// Bounds of --width.
 constexpr talus::Bounds kWidth{"width", "m", "of the object", 0.0, 1000.0, talus::Bounds::AboveMin};
 
 struct HazardOptions {

@@ -15,15 +15,14 @@ double number_in(std::string_view text);
 /// A number for a file with at most `digits` significant digits, like "%.4g" of printf for 4: "0.1235", "1.235e+06".
 std::string significant(double value, int digits);
 
-/// The same for a reader; one with more digits before its point has them all: "1235000", not "1.235e+06".
+/// A number for a reader: as `significant`, but with all digits before its point: "1235000", not "1.235e+06".
 std::string with_digits(double value, int digits);
 
 /// A law says 1e-280 as easily as this, and no data can.
 inline constexpr double kSmallestShare = 1e-9;
 
 /// A share in percent with at most `digits` significant digits: "21.6 %" for 0.2158 and 3; "below 1e-07 %" for less
-/// than `kSmallestShare`. Near the whole with four or more, so that a part is never "100 %": "99.96 %", "above 99.99
-/// %".
+/// than `kSmallestShare`. A part near the whole has four digits or more, and is never "100 %" ("99.96 %").
 std::string percent(double share, int digits = 3);
 
 /// A number with `decimals` digits after the point, like "%.1f" of printf for 1: "12.0".

@@ -29,7 +29,7 @@ bool is_run_page(const std::filesystem::path& file);
 ///   what readers leave beside one of these, or beside a raster that is gone (`read_file_of`).
 std::vector<std::string> foreign_in(const std::filesystem::path& folder);
 
-/// What later commands have added to the results of a run: files of `hazard`, `barrier` and `report`.
+/// Files that `hazard`, `barrier` and `report` have added to the results of a run.
 std::vector<std::string> later_results(const std::filesystem::path& folder);
 
 /// The file X beside which a reader leaves a file of this name: X.aux.xml, X.ovr, X-wal, X-shm, X-journal; empty where

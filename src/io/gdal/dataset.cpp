@@ -121,14 +121,17 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
   check_input(file);
   if ((kinds & GDAL_OF_VECTOR) != 0) check_vector_file(name_for_gdal(file));
   // A text table does not declare its geometry. Its cells stay text, so that an id 01 does not become 1.
-  const char* const by_place[] = {"AUTODETECT_TYPE=NO", "X_POSSIBLE_NAMES=x", "Y_POSSIBLE_NAMES=y",
-                                  "KEEP_GEOM_COLUMNS=NO", nullptr};
-  const char* const by_geometry[] = {"AUTODETECT_TYPE=NO", "GEOM_POSSIBLE_NAMES=wkt,geometry,geom",
-                                     "KEEP_GEOM_COLUMNS=NO", nullptr};
-  const bool is_table = is_text_table(file);
-  const char* const* options = !is_table ? nullptr : has_geometry_column(name_for_gdal(file)) ? by_geometry : by_place;
+  CPLStringList options;
+  if (is_text_table(file)) {
+    options.SetNameValue("AUTODETECT_TYPE", "NO");
+    options.SetNameValue("KEEP_GEOM_COLUMNS", "NO");
+    if (const auto geometry = geometry_column(name_for_gdal(file)))
+      options.SetNameValue("GEOM_POSSIBLE_NAMES", geometry->c_str());
+    else
+      options.SetNameValue("X_POSSIBLE_NAMES", "x").SetNameValue("Y_POSSIBLE_NAMES", "y");
+  }
   Dataset dataset(GDALDataset::Open(name_for_gdal(file).c_str(), kinds | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
-                                    nullptr, options, nullptr));
+                                    nullptr, options.List(), nullptr));
   if (!dataset) {
     const char* kind = (kinds & GDAL_OF_RASTER) == 0   ? "vector layer"
                        : (kinds & GDAL_OF_VECTOR) == 0 ? "raster"

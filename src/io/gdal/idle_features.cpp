@@ -51,7 +51,7 @@ void IdleFeatures::warn(const Raster<std::uint8_t>& cells, std::vector<std::stri
   std::vector<std::string> under;
   for (const auto& [name, value] : marked_)
     if (!left[value]) under.push_back(name);
-  add(under, "of a kind of which later ones leave no cell, which have no effect", ": the last in the file counts");
+  add(under, "covered by later ones, so that none of their name is left", ": the last in the file counts");
   add(narrow_, "that cover no cell of the DEM (its centre counts) and have no effect",
       ": draw them wider than a cell, " + with_digits(std::max(grid.cell_x, grid.cell_y), 3) + " m");
 }

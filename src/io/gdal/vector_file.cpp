@@ -53,8 +53,11 @@ File opened(const std::string& path) {
   return File(VSIFOpenL(path.c_str(), "rb"));
 }
 
-/// Reads the structure of a CSV to its end; nothing if it cannot be read (GDAL says why) or is empty.
-std::optional<CsvStructure> structure_of(const std::string& path) {
+/// How much of a CSV is read.
+enum class CsvPart { Header, Whole };
+
+/// Structure of a CSV; nothing if it cannot be read (GDAL says why) or is empty.
+std::optional<CsvStructure> structure_of(const std::string& path, CsvPart part = CsvPart::Whole) {
   const File file = opened(path);
   if (!file) return std::nullopt;
   std::string piece(std::size_t{1} << 16, '\0');
@@ -67,6 +70,7 @@ std::optional<CsvStructure> structure_of(const std::string& path) {
       structure.emplace(path, text.substr(0, text.find_first_of("\r\n")));
     }
     structure->take(text);
+    if (part == CsvPart::Header) return structure;
   }
   if (structure) structure->finish();
   return structure;
@@ -172,17 +176,12 @@ OddCells odd_cells(const std::string& path) {
   return structure ? structure->odd_cells() : OddCells{};
 }
 
-bool has_geometry_column(const std::string& path) {
-  const File file = opened(without_prefix(path));
-  if (!file) return false;
-  std::string piece(std::size_t{1} << 16, '\0');
-  piece.resize(VSIFReadL(piece.data(), 1, piece.size(), file.get()));
-  std::string_view text = piece;
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
-  CsvStructure structure(path, text.substr(0, text.find_first_of("\r\n")));
-  structure.take(text);
-  return std::ranges::any_of(kGeometryColumns,
-                             [&](const char* name) { return std::ranges::count(structure.columns(), name) > 0; });
+std::optional<std::string> geometry_column(const std::string& path) {
+  const auto structure = structure_of(without_prefix(path), CsvPart::Header);
+  if (!structure) return std::nullopt;
+  for (const char* name : {"wkt", "geometry", "geom"})
+    if (std::ranges::count(structure->columns(), name) > 0) return name;
+  return std::nullopt;
 }
 
 CsvStructure::CsvStructure(std::string path, std::string_view header)

@@ -1,6 +1,6 @@
 #pragma once
-#include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,11 +32,9 @@ OddCells odd_cells(const std::string& path);
 /// Whether GDAL takes a file for a text table by its name; one that is packed too, where GDAL unpacks it (/vsigzip/).
 bool is_text_table(const std::string& path);
 
-/// Columns of a text table that hold geometries as WKT (in any case of letters).
-inline constexpr std::array<const char*, 3> kGeometryColumns{"wkt", "geometry", "geom"};
-
-/// Whether a text table has one of them: columns x and y beside it are fields. GDAL takes them for the place.
-bool has_geometry_column(const std::string& path);
+/// Name of the column of a text table that holds geometries as WKT: wkt, geometry or geom, in any case of letters.
+/// Columns x and y beside it are fields. Nothing if it has none.
+std::optional<std::string> geometry_column(const std::string& path);
 
 /// The structure of a CSV, read before GDAL reads it. GDAL 3.6 ends with a crash where x stands twice in the header,
 /// loses what comes after a quotation mark that is not closed, and takes rows that are too short or too long.
@@ -55,7 +53,7 @@ class CsvStructure {
 
   /// As the function of this name, of what was taken.
   const OddCells& odd_cells() const { return odd_; }
-  /// Those of the header, in small letters.
+  /// Names of the columns, in small letters.
   const std::vector<std::string>& columns() const { return columns_; }
 
  private:

@@ -112,7 +112,7 @@ class AttributeReader {
     if (columns_.empty()) return path_ + ": no field is read" + (there.empty() ? "" : "; there are " + joined(there));
     std::vector<std::string> others;
     for (const std::string& field : there)
-      if (!is_read(field) && !is_place(field)) others.push_back(field);
+      if (!is_read(field)) others.push_back(field);
     return fields_note(path_, columns_, features_) + (others.empty() ? "" : "; others: " + joined(others));
   }
 
@@ -140,10 +140,6 @@ class AttributeReader {
   }
 
  private:
-  /// A column of a table that has the place of a feature.
-  static bool is_place(const std::string& field) {
-    return std::ranges::any_of(std::array{"x", "y", "wkt"}, [&](const char* p) { return EQUAL(field.c_str(), p); });
-  }
   static bool is_height(const std::string& field) { return EQUAL(field.c_str(), "height"); }
   bool is_read(const std::string& field) const {
     return std::ranges::find(columns_, field, &FieldUse::field) != columns_.end();

@@ -66,7 +66,7 @@ struct ProfileSpec {
   double bin = 5.0;             ///< of the results [m]
 };
 
-/// What a model was fitted on, as far as its file says so.
+/// Terrain, blocks and c to which a model was fitted, as far as its file says so.
 struct FittedOn {
   std::optional<SurfaceKind> surface;
   std::optional<double> cell;                     ///< side of the cells of the DEM [m]

@@ -15,6 +15,9 @@ namespace {
 /// Multiple of `kMuchRetreat` above which the warning comes: it is for wrong units, which are 100 times off or more.
 constexpr double kUnlikely = 50.0;
 
+/// Events per year above which a polygon releases more than one block a year, whatever the rounding of the weights.
+constexpr double kSeveral = 1.01;
+
 /// Mean volume of spheres whose diameters are uniform over a range [m^3]: the mean of d^3 is
 /// (a^3 + a^2 b + a b^2 + b^3) / 4.
 double mean_volume(const Range& diameter) {
@@ -66,7 +69,7 @@ double area_of_polygons(const Scenario& s) {
   return area;
 }
 
-/// What falls from a source cell, or from all of a feature, in a year.
+/// Events and rock of a source cell, or of a whole feature, in a year.
 struct Fall {
   double events = 0.0, volume = 0.0;  // [1/year], [m^3/year]
   void add(const Fall& other) { events += other.events, volume += other.volume; }
@@ -143,7 +146,7 @@ std::string retreat_warning(const Scenario& scenario) {
   for (const RockFace& face : faces) worst.fall.add(face.fall);
   worst.area = area_of_polygons(scenario);
   for (const RockFace& face : faces)
-    if (face.fall.events > 1.0 && face.retreat() > worst.retreat()) worst = face;
+    if (face.fall.events > kSeveral && face.retreat() > worst.retreat()) worst = face;
   if (!(worst.retreat() > kUnlikely * kMuchRetreat)) return {};
   const std::string where = worst.name.empty()
                                 ? "the polygons, " + readable(worst.area) + " m2 of surface, which"
