@@ -4,9 +4,13 @@ import hashlib
 import json
 import os
 import shutil
+import signal
+import socket
 import sqlite3
+import struct
 import subprocess
 import tempfile
+import threading
 import unittest
 
 import numpy as np
@@ -106,6 +110,49 @@ def bands_of(path):
     return gdal.Open(path).ReadAsArray()
 
 
+class Program:
+    """The program, loaded once: each call is a fork of it (program_server.cpp)."""
+    of_thread = threading.local()
+
+    @classmethod
+    def of_this_thread(cls):
+        """None where no server was built, or the environment is no longer that of its start."""
+        if "TALUS_SERVER" not in os.environ:
+            return None
+        if not hasattr(cls.of_thread, "program"):
+            cls.of_thread.program = cls()
+        return cls.of_thread.program if cls.of_thread.program.environment == dict(os.environ) else None
+
+    def __init__(self):
+        self.environment = dict(os.environ)
+        self.socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        with theirs:
+            self.process = subprocess.Popen([TALUS], pass_fds=[theirs.fileno()], env={
+                **self.environment, "LD_PRELOAD": os.environ["TALUS_SERVER"], "TALUS_SERVER": str(theirs.fileno())})
+
+    def __del__(self):
+        self.socket.close()
+        self.process.wait()
+
+    def number(self):
+        return struct.unpack("i", self.socket.recv(4))[0]
+
+    def call(self, arguments, timeout, cwd=None):
+        with tempfile.TemporaryFile("w+", encoding="utf-8") as out, tempfile.TemporaryFile("w+", encoding="utf-8") as err:
+            words = "".join(os.fspath(word) + "\0" for word in (cwd or os.getcwd(), *arguments))
+            socket.send_fds(self.socket, [os.fsencode(words)], [out.fileno(), err.fileno()])
+            self.socket.settimeout(timeout)
+            child = self.number()
+            try:
+                status = self.number()
+            except TimeoutError:
+                os.kill(child, signal.SIGKILL)
+                self.number()
+                raise subprocess.TimeoutExpired([TALUS, *arguments], timeout) from None
+            out.seek(0), err.seek(0)
+            return subprocess.CompletedProcess([TALUS, *arguments], os.waitstatus_to_exitcode(status), out.read(), err.read())
+
+
 class Case(unittest.TestCase):
     """A fresh folder with dem.tif and sources.gpkg for every test."""
 
@@ -153,6 +200,9 @@ class Case(unittest.TestCase):
 
     def call(self, *arguments, **options):
         options.setdefault("timeout", 120)
+        program = Program.of_this_thread() if set(options) <= {"timeout", "cwd"} else None
+        if program is not None:
+            return program.call(arguments, **options)
         return subprocess.run([TALUS, *arguments], capture_output=True, text=True, check=False, **options)
 
     def run_well(self, *arguments, **options):
