@@ -500,6 +500,8 @@ class Products(Profile):
         self.assertNotIn("along the line", text)
         self.assertEqual(sorted(name for name in self.contents("out") if name.startswith("barrier_")), ["barrier_100.csv", "barrier_100.json"])
         self.assertNotIn("Each stretch", self.page("out")[1])
+        for flag, value in (("--stretch", "5"), ("--containment", "90")):
+            self.fails(2, flag, "of a profile", "leave it out", arguments=["barrier", self.path("out"), "--screen", "100", flag, value])
         self.profile("--trajectories", "100", "--overwrite")  # what barrier and report have added is Talus's own
 
     def test_the_checklist_names_the_terrain_of_the_profile(self):

@@ -29,12 +29,14 @@ using talus::io::RunSummary;
 struct BarrierOptions {
   std::string folder, screen, observed, frequency;
   talus::DesignFactors factors;
-  double percentile = 95.0, containment = 99.0;  // [%]
-  std::optional<double> volume, density;         // [m^3], [kg/m^3]
-  double stretch = 30.0;                         // longest [m]
+  double percentile = 95.0;                    // [%]
+  std::optional<double> volume, density;       // [m^3], [kg/m^3]
+  std::optional<double> containment, stretch;  // [%], longest [m]: kContained, kLongestStretch; not for a profile
   std::uint64_t seed = 1;
   bool unweighted = false, quiet = false;
 };
+
+constexpr double kContained = 99.0, kLongestStretch = 30.0;
 
 constexpr Bounds factor(std::string_view key, std::string_view meaning) {
   return {key, "1", meaning, 1.0, 3.0};
@@ -64,6 +66,14 @@ void check_numbers(const BarrierOptions& o) {
     if (value)
       if (const auto fault = talus::fault_of(bounds, *value))
         throw talus::InputError(std::string(bounds.key) + " = " + talus::text_of(*value) + ": " + *fault);
+}
+
+/// Throws InputError if what only a line on a map has was asked for.
+void refuse_width_of_profile(const RunSummary& run, const BarrierOptions& o) {
+  for (const auto& [key, value] : {std::pair{kContainment.key, o.containment}, {kStretch.key, o.stretch}})
+    if (run.of_profile && value)
+      throw talus::InputError(std::string(key) + " = " + talus::text_of(*value) + ": " + o.folder +
+                              " is of a profile, where a barrier has no width and no stretches: leave it out");
 }
 
 std::vector<std::string> screen_ids(const RunSummary& run) {
@@ -349,7 +359,7 @@ void add_stretches(BarrierReport& report, std::span<const talus::LineCrossing> a
   if (const auto note = end_note(*report.width, std::accumulate(parts.begin(), parts.end(), 0.0)))
     report.notes.push_back(*note);
   for (const talus::StretchDesign& s :
-       talus::design_stretches(all, talus::stretch_edges(parts, o.stretch), rule, report.factors))
+       talus::design_stretches(all, talus::stretch_edges(parts, report.longest), rule, report.factors))
     report.stretches.push_back({s, {}});
   if (const auto note = again_note(report, blocks)) report.notes.push_back(*note);
   if (const auto note = talus::io::stretch_note(report)) report.notes.push_back(*note);
@@ -377,7 +387,7 @@ void add_design(BarrierReport& report, std::span<const talus::LineCrossing> cros
             volume_note(*o.volume, talus::DesignBlockRule{{}, rule.density, rule.rock_density}.of(crossings).volume))
       report.notes.push_back(*note);
   report.design = talus::design_barrier(crossings, report.block, report.factors);
-  report.longest = o.stretch;
+  report.longest = o.stretch.value_or(kLongestStretch);
   if (!run.of_profile) add_stretches(report, all, crossings.size(), rule, run, o);
 }
 
@@ -397,6 +407,7 @@ void add_crossings_per_year(BarrierReport& report, const Weighting& weighting) {
 int design(BarrierOptions o) {
   check_numbers(o);
   const RunSummary run = talus::io::read_run(o.folder);
+  refuse_width_of_profile(run, o);
   if (o.screen.empty()) o.screen = only_screen(run);
   talus::io::refuse_unwritable(o.folder);
   const CrossingTable crossings = simulated_crossings(run, o);
@@ -417,7 +428,7 @@ int design(BarrierOptions o) {
   report.released = run.released;
   report.crossings = crossings.count;
   report.blocks = crossings.blocks;
-  report.containment = 0.01 * o.containment;
+  report.containment = 0.01 * o.containment.value_or(kContained);
   if (!run.of_profile) report.width = width_by_map(report, blocks, run);
   const std::vector<talus::LineCrossing> all = with_later_ones(blocks, crossings, screen_of(run, o));
   keep_falling(blocks, o, report, weighting);
@@ -476,9 +487,9 @@ void add_barrier(CLI::App& app, Action& action) {
          "");
   number("--density", o->density, "of the design block [kg/m3]; the run's where it is not given", kDensity, "");
   number("--containment", o->containment, "share of the crossings that the width holds [%]: 99 (default)", kContainment,
-         talus::text_of(o->containment));
+         talus::text_of(kContained));
   number("--stretch", o->stretch, "longest stretch of the line with a design of its own [m]: 30 (default)", kStretch,
-         talus::text_of(o->stretch));
+         talus::text_of(kLongestStretch));
   with(command->add_option("--frequency", o->frequency,
                            "another weighting (TOML: [frequency], [features]), as of talus hazard"),
        file_of({"toml"}));
