@@ -72,7 +72,7 @@ InputFaults::InputFaults(std::vector<std::string> faults, std::size_t count)
     : InputError(summary_of(faults, count)), faults_(std::move(faults)), count_(count) {}
 
 void FaultList::add(std::string fault) {
-  const auto feature = feature_of(fault, path_ + ": " + feature_ + " ");
+  const auto feature = feature_of(fault, before_);
   const std::string kind_text = feature ? without_values(feature->rest) : fault;
   const auto found = index_of_kind_.find(kind_text);
   if (found == index_of_kind_.end()) {

@@ -1,8 +1,10 @@
 #include "talus/io/campaign/campaign_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "files.hpp"
+#include "talus/base/input_faults.hpp"
 #include "talus/fit/campaign/deposits.hpp"
 #include "talus/io/campaign/model_file.hpp"
 
@@ -23,7 +25,8 @@ class Campaigns : public Files {
   }
 
   LoadedCampaign read(const std::string& more = "") {
-    return read_campaign(write_text("c.toml", "dem = \"dem.tif\"\nblocks = \"blocks.csv\"\n" + more));
+    const std::string exact = more.find("[measurement_error]") == more.npos ? "[measurement_error]\n" : "";
+    return read_campaign(write_text("c.toml", "dem = \"dem.tif\"\nblocks = \"blocks.csv\"\n" + more + exact));
   }
   void refused(const std::string& more, const std::vector<std::string>& parts) {
     expect_input_error([&] { read(more); }, parts);
@@ -125,11 +128,53 @@ TEST_F(Campaigns, SizesInAnotherUnitAreSaid) {
   }
 }
 
-TEST_F(Campaigns, TablesOfOtherSeparatorsAreToldSo) {
-  write_text("blocks.csv", "id;x;y;release_height_m;mass_kg\na;600050;5200040;1;500\n");
-  refused("", {"blocks.csv:1: has one column, 'id;x;y;", "separated by commas"});
+TEST_F(Campaigns, SemicolonsAndTabsSeparateAsWell) {
+  const std::string commas = "id,x,y,release_height_m,mass_kg,group\na,600050,5200040,1,500,\"A, west\"\n";
+  write_text("blocks.csv", commas);
+  EXPECT_EQ(read().campaign.blocks[0].group, "A, west");
+  for (const char separator : {';', '\t'}) {  // as a spreadsheet writes them where the comma is not the list separator
+    std::string other = commas;
+    std::ranges::replace(other, ',', separator);
+    write_text("blocks.csv", other);
+    const MeasuredBlock block = read().campaign.blocks[0];
+    EXPECT_EQ(block.x, 50.0);
+    EXPECT_EQ(block.mass, 500.0);
+    EXPECT_EQ(block.group, std::string("A") + separator + " west");
+  }
+  write_text("blocks.csv", "id;x;y;release_height_m;mass_kg\na;600050,5;5200040;1;500\n");
+  refused("", {"blocks.csv:2: x = '600050,5'", "with a point for decimals"});
+  write_text("blocks.csv", "id;x\ty;release_height_m;mass_kg\na;600050;5200040;1;500\n");
+  refused("", {"blocks.csv:1: has one column, 'id;x", "all by semicolons"});
   write_text("blocks.csv", "id,x,y,release_height_m,mass_kg\ra,600050,5200040,1,500\r");
   refused("", {"blocks.csv:1: lines must end with a line feed", "not with CR alone"});
+}
+
+TEST_F(Campaigns, FaultsOfAllRowsAreListed) {
+  write_text("blocks.csv",
+             "id,x,y,release_height_m,mass_kg\na,600050,5200040,1,500\nb,0,0,1,500\nc,600050,5200040,1,heavy\n");
+  refused("", {"blocks.csv:3: x = '0'", "(and 1 more fault)"});
+  std::string rows = "id,x,y,diameter_m\n";
+  for (int i = 0; i < 9; ++i) rows += "d" + std::to_string(i) + ",0,0,1\n";
+  write_text("deposits.csv", rows);
+  write_vector(path("s.gpkg"), "EPSG:32632", {}, {{"POLYGON((0 0,30 0,30 20,0 20,0 0))"}});
+  const std::string campaign =
+      write_text("d.toml", "dem = \"dem.tif\"\n[deposits]\nfile = \"deposits.csv\"\nsources = \"s.gpkg\"\n");
+  try {
+    read_campaign(campaign);
+    FAIL() << "no error";
+  } catch (const InputFaults& faults) {
+    EXPECT_EQ(faults.count(), 9U);
+    ASSERT_EQ(faults.faults().size(), 4U);
+    EXPECT_TRUE(faults.faults()[3].ends_with("deposits.csv: and 6 more like this, in lines 5 to 10"));
+  }
+}
+
+TEST_F(Campaigns, MeasurementsWithoutErrorsAreSaid) {
+  const std::string start = "dem = \"dem.tif\"\nblocks = \"blocks.csv\"\n";
+  const std::vector<std::string> said = read_campaign(write_text("c.toml", start)).warnings;
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said[0].find("c.toml: has no [measurement_error]"), std::string::npos) << said[0];
+  EXPECT_TRUE(read_campaign(write_text("c.toml", start + "[measurement_error]\nposition_m = 0\n")).warnings.empty());
 }
 
 TEST_F(Campaigns, TextAfterAQuotedCellIsRefused) {

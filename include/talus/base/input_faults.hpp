@@ -31,12 +31,16 @@ class FaultList {
   /// @param path            of the layer
   /// @param feature, after  words around the number of a feature: "row", " below the header"
   FaultList(std::string path, std::string feature, std::string after)
-      : path_(std::move(path)), feature_(std::move(feature)), after_(std::move(after)) {}
+      : path_(std::move(path)),
+        feature_(std::move(feature)),
+        before_(path_ + ": " + feature_ + " "),
+        after_(std::move(after)) {}
+  /// Of the lines of a text file.
+  explicit FaultList(std::string path) : path_(std::move(path)), feature_("line"), before_(path_ + ":") {}
 
-  /// How the faults of a feature begin: "cliffs.gpkg: feature 12", "trees.csv: row 12 below the header".
-  std::string label(std::int64_t number) const {
-    return path_ + ": " + feature_ + " " + std::to_string(number) + after_;
-  }
+  /// How the faults of a feature begin: "cliffs.gpkg: feature 12", "trees.csv: row 12 below the header"; of a line:
+  /// "blocks.csv:12".
+  std::string label(std::int64_t number) const { return before_ + std::to_string(number) + after_; }
 
   /// Does some work; if it throws InputError, keeps the fault. @return whether there was none
   template <class Work>
@@ -68,7 +72,8 @@ class FaultList {
 
   static constexpr std::size_t kShown = 3;
   static constexpr std::size_t kMost = 1000;  // kinds; of a layer of millions of bad features the rest are only counted
-  std::string path_, feature_, after_;
+  std::string path_, feature_;
+  std::string before_, after_;       // what stands around the number of a feature
   std::vector<std::string> faults_;  // the first of every kind, as they were met
   std::vector<Kind> kinds_;
   std::map<std::string, std::size_t> index_of_kind_;

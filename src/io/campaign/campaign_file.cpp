@@ -31,6 +31,7 @@ struct CampaignSpec {
   NamedFile dem, zones, blocks, stops, passages, screens, samples;
   std::vector<std::string> zone_codes, zone_names;
   MeasurementError error;
+  bool error_given = false;
   DepositSpec deposits;
 };
 
@@ -118,6 +119,7 @@ class CampaignReader {
   void read_error(TableReader table) {
     constexpr Bounds kMetres{"", "m", "standard deviation of the measurement", 0.0, 1000.0};
     constexpr Bounds kFraction{"", "1", "standard deviation relative to the value, such as 0.03", 0.0, 1.0};
+    spec_.error_given = table.value() != nullptr;
     MeasurementError& e = spec_.error;
     e.position_m = table.number("position_m", kMetres).value_or(0.0);
     e.speed_fraction = table.number("speed_fraction", kFraction).value_or(0.0);
@@ -188,6 +190,10 @@ LoadedCampaign read_campaign(const std::string& path, const std::optional<std::s
     read_deposits(spec.deposits, terrain, campaign, out.warnings);
   else
     read_tables({spec.blocks.path, spec.stops.path, spec.passages.path, spec.samples.path}, campaign, out.warnings);
+  if (!spec.error_given)
+    out.warnings.push_back(path +
+                           ": has no [measurement_error]: all that was measured counts as exact; give the standard "
+                           "deviations of it, such as position_m = 0.3");
   const std::pair<const char*, std::string> files[] = {
       {"campaign", std::filesystem::absolute(path).lexically_normal().string()},
       {"dem", spec.dem.path},

@@ -46,7 +46,7 @@ class Tables {
                          {"id", "x", "y", "release_height_m", "release_radius_m", "vx", "vy", "vz", "mass_kg",
                           "density_kgm3", "L1_m", "L2_m", "L3_m", "day", "group", "rock", "holdout"},
                          {"id", "x", "y", "release_height_m", "mass_kg"});
-    for (const Row& row : table.rows()) {
+    table.for_each_row([&](const Row& row) {
       MeasuredBlock block;
       block.id = table.name(row, "id");
       block.stream = stream_of_name(block.id);
@@ -70,7 +70,7 @@ class Tables {
       block.passages.resize(campaign_.screens.size());
       check_release(table, row, block);
       campaign_.blocks.push_back(std::move(block));
-    }
+    });
     if (campaign_.blocks.empty()) throw InputError(files_.blocks + ": has no blocks, must have one row for each");
     warn_of_masses(files_.blocks, campaign_.blocks, warnings_);
     warn_of_median(files_.blocks, campaign_.blocks, warnings_);
@@ -116,17 +116,17 @@ class Tables {
 
   void read_stops() {
     const CsvTable table(files_.stops, {"id", "x", "y", "mass_kg"}, {"id", "x", "y"});
-    for (const Row& row : table.rows()) {
+    table.for_each_row([&](const Row& row) {
       MeasuredBlock& block = block_of_row(table, row);
       const bool placed = !table.text(row, "x").empty() || !table.text(row, "y").empty();
       if ((placed && block.stop) || (!table.text(row, "mass_kg").empty() && block.stop_mass)) {
         warnings_.push_back(files_.stops + ":" + std::to_string(row.line) + ": block '" + block.id +
                             "' has a stop already: the first one counts");
-        continue;
+        return;
       }
       if (placed) block.stop = place_on_map(table, row);
       if (const auto mass = stop_mass_of(table, row, block)) block.stop_mass = mass;
-    }
+    });
   }
 
   /// Throws InputError if far more arrived than was released: one of them is in another unit.
@@ -147,7 +147,7 @@ class Tables {
     std::string first;
     std::vector<bool> off_map;
     for (const Screen& screen : campaign_.screens) off_map.push_back(is_off_map(screen));
-    for (const Row& row : table.rows()) {
+    table.for_each_row([&](const Row& row) {
       MeasuredBlock& block = block_of_row(table, row);
       const std::size_t screen = screen_of(table, row);
       if (off_map[screen])
@@ -161,7 +161,7 @@ class Tables {
       else if (++doubled == 1)
         first = files_.passages + ":" + std::to_string(row.line) + ": block '" + block.id +
                 "' has a passage of screen '" + campaign_.screens[screen].id + "' already: the first one counts";
-    }
+    });
     if (doubled > 1) first += "; so it is in " + std::to_string(doubled - 1) + " more rows";
     if (doubled > 0) warnings_.push_back(first);
   }
@@ -187,7 +187,7 @@ class Tables {
 
   void read_samples() {
     const CsvTable table(files_.samples, {"id", "x", "y", "z", "speed_ms", "angular_velocity_rads"}, {"id", "x", "y"});
-    for (const Row& row : table.rows()) {
+    table.for_each_row([&](const Row& row) {
       MeasuredBlock& block = block_of_row(table, row);
       const Eigen::Vector2d place = place_on_map(table, row);
       Sample sample;
@@ -198,7 +198,7 @@ class Tables {
       sample.speed = table.number(row, "speed_ms", kSpeed).value_or(kNotGiven);
       sample.spin = table.number(row, "angular_velocity_rads", kSpin).value_or(kNotGiven);
       block.samples.push_back(sample);
-    }
+    });
   }
 
   /// Puts the blocks in the order of their ids and their samples in that of the distance, so that the order of rows in

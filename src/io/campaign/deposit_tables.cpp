@@ -47,7 +47,7 @@ class DepositTable {
 
   std::vector<MeasuredBlock> read(const Surface& surface) {
     std::vector<MeasuredBlock> blocks;
-    for (const CsvTable::Row& row : table_.rows()) {
+    table_.for_each_row([&](const CsvTable::Row& row) {
       MeasuredBlock block;
       block.id = table_.name(row, "id");
       const auto [earlier, fresh] = lines_.try_emplace(block.id, row.line);
@@ -60,7 +60,7 @@ class DepositTable {
       block.group = table_.text(row, "group");
       block.holdout = table_.number(row, "holdout", kHoldout).value_or(0.0) == 1.0;
       blocks.push_back(std::move(block));
-    }
+    });
     std::ranges::sort(blocks, {}, &MeasuredBlock::id);
     return blocks;
   }

@@ -7,6 +7,7 @@
 #include "regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/expect.hpp"
+#include "talus/base/input_faults.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 
@@ -20,12 +21,13 @@ std::string content_of(const std::string& path) {
   return text;
 }
 
-/// Cuts a text into rows and cells. A cell in quotation marks may hold commas, line ends and doubled marks.
+/// Cuts a text into rows and cells. A cell in quotation marks may hold separators, line ends and doubled marks.
 void split(const std::string& text, const std::string& path, const std::function<void(CsvTable::Row)>& take) {
   std::vector<std::string> cells;
   std::string cell;
   int line = 1, start = 1;
   bool quoted = false, was_quoted = false;
+  const char separator = separator_of(std::string_view(text).substr(0, text.find_first_of("\r\n"))).value_or(',');
   const auto end_cell = [&] {
     if (!is_utf8(cell)) throw InputError(path + ":" + std::to_string(start) + ": '" + cell + "' " + kEncodingFault);
     cells.push_back(was_quoted ? cell : trimmed(cell));
@@ -51,7 +53,7 @@ void split(const std::string& text, const std::string& path, const std::function
     } else if (c == '"' && !was_quoted && trimmed(cell).empty()) {
       cell.clear();
       quoted = was_quoted = true;
-    } else if (c == ',') {
+    } else if (c == separator) {
       end_cell();
     } else if (c == '\n') {
       end_row();
@@ -60,8 +62,11 @@ void split(const std::string& text, const std::string& path, const std::function
       cell += c;
     } else if (c != ' ' && c != '\t' && c != '\r') {
       throw InputError(path + ":" + std::to_string(line) +
-                       ": text stands after a quotation mark that closes a cell, must be a comma or the end of the "
-                       "line: is a quotation mark missing?");
+                       ": text stands after a quotation mark that closes a cell, must be " +
+                       (separator == '\t'  ? "a tab"
+                        : separator == ';' ? "a semicolon"
+                                           : "a comma") +
+                       " or the end of the line: is a quotation mark missing?");
     }
   }
   if (quoted)
@@ -74,6 +79,18 @@ void split(const std::string& text, const std::string& path, const std::function
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
   return first == std::string::npos ? std::string() : text.substr(first, last - first + 1);
+}
+
+std::optional<char> separator_of(std::string_view header) {
+  std::optional<char> found;
+  bool quoted = false;
+  for (const char c : header) {
+    if (c == '"') quoted = !quoted;
+    if (quoted || (c != ',' && c != ';' && c != '\t')) continue;
+    if (found && found != c) return ',';
+    found = c;
+  }
+  return found;
 }
 
 void refuse_utf16(const std::string& path, std::string_view text) {
@@ -123,7 +140,7 @@ void CsvTable::read_header(std::vector<std::string> columns, const std::vector<s
                      ":1: lines must end with a line feed (LF or CR LF), not with CR alone: save it as CSV again");
   if (columns_.size() == 1 && columns_[0].find_first_of(";\t") != std::string::npos)
     throw InputError(path_ + ":1: has one column, '" + columns_[0] +
-                     "': cells must be separated by commas: save it as CSV (comma delimited)");
+                     "': cells must all be separated by commas, all by semicolons or all by tabs: save it as CSV");
   std::vector<std::string> unknown;
   std::ranges::copy_if(columns_, std::back_inserter(unknown), [&](const std::string& column) {
     return !known.empty() && std::ranges::find(known, column) == known.end();
@@ -137,6 +154,12 @@ void CsvTable::read_header(std::vector<std::string> columns, const std::vector<s
       throw InputError(path_ + ":1: column '" + *column + "' is there twice, must be there once");
   for (const std::string& column : required)
     if (!has(column)) throw InputError(path_ + ":1: has no column '" + column + "', must have " + joined(required));
+}
+
+void CsvTable::for_each_row(const std::function<void(const Row&)>& take) const {
+  FaultList faults(path_);
+  for (const Row& row : rows_) faults.attempt([&] { take(row); });
+  faults.stop();
 }
 
 int CsvTable::column_of(const std::string& name) const {

@@ -15,6 +15,10 @@ std::optional<double> number_of_cell(const std::string& text);
 /// A text without the blanks around it.
 std::string trimmed(const std::string& text);
 
+/// What separates cells, as GDAL finds it too: the one of comma, semicolon and tab that is in the header, the comma
+/// where several are; nothing where none is.
+std::optional<char> separator_of(std::string_view header);
+
 /// Throws InputError if the text of a file begins as UTF-16 does.
 void refuse_utf16(const std::string& path, std::string_view text);
 /// The fault of a zero byte in a table.
@@ -24,8 +28,8 @@ inline constexpr const char* kEncodingFault =
     "is not in UTF-8, must be: in a spreadsheet save the table as \"CSV UTF-8\", in QGIS export the layer with the "
     "encoding UTF-8";
 
-/// A text table with a header: commas, quotation marks as in RFC 4180. Every fault names file, line,
-/// column, value and what is allowed.
+/// A text table with a header: commas (or semicolons or tabs, if the header has these), quotation marks as in RFC 4180.
+/// Every fault names file, line, column, value and what is allowed.
 class CsvTable {
  public:
   struct Row {
@@ -45,6 +49,8 @@ class CsvTable {
            const Take& take);
 
   const std::vector<Row>& rows() const { return rows_; }
+  /// Gives each row to `take`. Throws InputFaults, with the faults of all rows, if it threw InputError for any.
+  void for_each_row(const std::function<void(const Row&)>& take) const;
   const std::vector<std::string>& columns() const { return columns_; }
   bool has(const std::string& column) const { return column_of(column) >= 0; }
 

@@ -23,22 +23,6 @@ bool ends_with(const std::string& path, const char* end) {
   return path.size() > length && EQUAL(path.c_str() + path.size() - length, end);
 }
 
-/// What separates cells, as GDAL finds it: the one of comma, semicolon and tab that is in the header; the comma where
-/// several are; a blank where none is.
-char separator_of(std::string_view header) {
-  char found = '\0';
-  bool quoted = false, blank = false;
-  for (const char c : header) {
-    if (c == '"') quoted = !quoted;
-    if (quoted) continue;
-    if (c == ' ') blank = true;
-    if (c != ',' && c != ';' && c != '\t') continue;
-    if (found != '\0' && found != c) return ',';
-    found = c;
-  }
-  return found != '\0' ? found : blank ? ' ' : ',';
-}
-
 std::string lower_trimmed(const std::string& text) {
   return lowercase(trimmed(text));
 }
@@ -185,7 +169,9 @@ std::optional<std::string> geometry_column(const std::string& path) {
 }
 
 CsvStructure::CsvStructure(std::string path, std::string_view header)
-    : path_(std::move(path)), separator_(separator_of(header)) {}
+    : path_(std::move(path)),
+      separator_(separator_of(header).value_or(
+          header.find('"') == header.npos && header.find(' ') != header.npos ? ' ' : ',')) {}
 
 void CsvStructure::take(std::string_view text) {
   for (const char c : text) take(c);
