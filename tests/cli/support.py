@@ -139,8 +139,8 @@ class Program:
 
     def call(self, arguments, timeout, cwd=None):
         with tempfile.TemporaryFile("w+", encoding="utf-8") as out, tempfile.TemporaryFile("w+", encoding="utf-8") as err:
-            words = "".join(os.fspath(word) + "\0" for word in (cwd or os.getcwd(), *arguments))
-            socket.send_fds(self.socket, [os.fsencode(words)], [out.fileno(), err.fileno()])
+            words = b"".join(os.fsencode(word) + b"\0" for word in (cwd or os.getcwd(), *arguments))
+            socket.send_fds(self.socket, [words], [out.fileno(), err.fileno()])
             self.socket.settimeout(timeout)
             child = self.number()
             try:

@@ -1155,11 +1155,14 @@ class FromPython(Case):
         project = xml.parse(self.path("out/talus.qgs")).getroot()
         wanted = [(layer.get("name"), layer.get("checked") == "Qt::Checked") for layer in project.iter("layer-tree-layer")
                   if layer.get("name") not in ("Sources of the run", "Hillshade of the DEM")]
-        found = [(node.name(), node.itemVisibilityChecked()) for node in groups[0].findLayers()
-                 if node.name() != "Vertices of the paths"]
+        *results, hillshade = groups[0].findLayers()
+        found = [(node.name(), node.itemVisibilityChecked()) for node in results if node.name() != "Vertices of the paths"]
         self.assertGreater(len(wanted), 15)
         self.assertEqual(found, wanted)
-        return [node.layer() for node in groups[0].findLayers()]
+        self.assertEqual((hillshade.name(), hillshade.itemVisibilityChecked()), ("Hillshade of the DEM", True))
+        self.assertEqual(hillshade.layer().renderer().type(), "hillshade")
+        self.assertFalse(os.path.exists(hillshade.layer().source() + ".aux.xml"))  # nothing is written beside the DEM
+        return [node.layer() for node in results]
 
     def test_every_title_of_a_result_has_a_german_one(self):
         from talus_qgis import results, texts

@@ -4,10 +4,10 @@ import os
 import re
 from contextlib import contextmanager
 
-from qgis.core import (Qgis, QgsGraduatedSymbolRenderer, QgsLayerTree, QgsLayerTreeGroup, QgsLineSymbol, QgsMapLayerLegendUtils,
+from qgis.core import (Qgis, QgsGraduatedSymbolRenderer, QgsHillshadeRenderer, QgsLayerTree, QgsLayerTreeGroup, QgsLineSymbol, QgsMapLayerLegendUtils,
                        QgsProcessingContext,
-                       QgsProcessingLayerPostProcessorInterface, QgsProject, QgsProviderRegistry, QgsRasterLayer,
-                       QgsRendererRange, QgsSingleBandPseudoColorRenderer, QgsVectorLayer, QgsWkbTypes)
+                       QgsProcessingLayerPostProcessorInterface, QgsProject, QgsProviderRegistry,
+                       QgsRasterDataProvider, QgsRasterLayer, QgsRasterPipe, QgsRendererRange, QgsSingleBandPseudoColorRenderer, QgsVectorLayer, QgsWkbTypes)
 from qgis.PyQt.QtCore import QCoreApplication, Qt, QThread
 
 from . import program
@@ -17,6 +17,7 @@ GROUP_MARK = "talus/folder"  # property of the group: the folder of its results
 RANK_MARK = "talus/rank"     # property of a layer: its place in the group
 TITLE_MARK = "talus/title"   # property of a layer: its title; its name may say the folder, too
 
+BELOW_ALL = 1e9  # rank of the hillshade
 LINES_OF_OBJECTS = "1.8"  # mm, as in src/io/results/vector_style.cpp
 TYPED = "|option:AUTODETECT_TYPE=YES"  # after the path of a table: its numbers are numbers
 ONE_KIND = "|geometrytype="  # in the source of a layer: one kind of geometry of a file that holds several
@@ -137,6 +138,29 @@ def _in_lines(of_areas):
 
 def _is_hazard_class(layer):
     return os.path.basename(layer.source()) == "hazard_class.tif"
+
+
+def _hillshade_of(folder):
+    """The DEM of a run as talus.qgs shows it, below all results; None where it is no file, or no longer one."""
+    try:
+        with open(os.path.join(folder, "run.json"), encoding="utf-8") as file:
+            path = next(read["path"] for read in json.load(file)["inputs"] if read["role"] == "dem")
+    except (OSError, ValueError, KeyError, TypeError, StopIteration):
+        return None
+    if not os.path.isfile(path):
+        return None
+    options = QgsRasterLayer.LayerOptions()
+    options.loadDefaultStyle = False  # for which QGIS would write statistics beside the DEM
+    layer = QgsRasterLayer(path, tr("title hillshade"), "gdal", options)
+    shade = QgsHillshadeRenderer(layer.dataProvider(), 1, 315, 45)
+    shade.setMultiDirectional(True)
+    layer.setRenderer(shade)
+    layer.setResamplingStage(QgsRasterPipe.ResamplingStage.Provider)  # as in src/io/results/qgis_project.cpp
+    layer.dataProvider().enableProviderResampling(True)
+    layer.dataProvider().setZoomedInResamplingMethod(QgsRasterDataProvider.ResamplingMethod.Bilinear)
+    layer.setCustomProperty(RANK_MARK, BELOW_ALL)
+    layer.setCustomProperty(TITLE_MARK, layer.name())
+    return layer
 
 
 def _rank(layer):
@@ -285,15 +309,16 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
         project = layer.project() or context.project() or QgsProject.instance()
         node = project.layerTreeRoot().findLayer(layer.id())
         if node is not None:
-            self._move(node, project.layerTreeRoot())
+            self._move(node, project)
 
     def _is_of_raster(self):
         """Whether the style is that of the raster of the same name alone (exits.tif beside exits.gpkg)."""
         with open(self.style, encoding="utf-8") as file:
             return "<renderer-v2" not in file.read()
 
-    def _move(self, node, root):
-        group = self._group(root)
+    def _move(self, node, project):
+        root = project.layerTreeRoot()
+        group = self._group(project)
         shown = self.shown
         self._remove_layers_without_file(group)
         if self._is_title_elsewhere(root, group, node.layerId()):  # so that a list of layers tells the two apart
@@ -305,7 +330,7 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
             if _same_layer(layer.source(), node.layer().source()):  # of an earlier run into the same folder
                 node.layer().project().removeMapLayer(layer.id())
                 continue
-            if isinstance(layer, QgsRasterLayer) and isinstance(node.layer(), QgsRasterLayer):
+            if isinstance(layer, QgsRasterLayer) and isinstance(node.layer(), QgsRasterLayer) and _rank(layer) != BELOW_ALL:
                 if _is_hazard_class(node.layer()):  # nothing shines through the hazard class, whichever of the two comes first
                     other.setItemVisibilityChecked(False)
                 elif _is_hazard_class(layer):
@@ -348,14 +373,19 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
             return False
         return _place(_rank(child.layer()), child.layer().customProperty(TITLE_MARK, "")) > _place(self.rank, self.name)
 
-    def _group(self, root):
+    def _group(self, project):
         """The group of the results, which is shown; those of other folders are hidden: their colours would shine through."""
+        root = project.layerTreeRoot()
         marked = [group for group in root.findGroups() if group.customProperty(GROUP_MARK)]
         own = next((group for group in marked if group.customProperty(GROUP_MARK) == self.folder), None)
         if own is None:
             own = QgsLayerTreeGroup(self.title)
             own.setCustomProperty(GROUP_MARK, self.folder)
             root.insertChildNode(0, own)
+            hillshade = _hillshade_of(self.folder)
+            if hillshade is not None:
+                project.addMapLayer(hillshade, False)
+                own.addLayer(hillshade).setExpanded(False)
         for group in marked:  # candidate sources are marked by their file, and stay
             if group is not own and os.path.isdir(self.folder) and os.path.isdir(group.customProperty(GROUP_MARK)):
                 group.setItemVisibilityChecked(False)

@@ -141,6 +141,7 @@ KEYS = {
     "phase fit": ("Fitting", "Passt an"),
     "phase diagnose": ("Diagnosing", "Diagnose"),
     # titles of layers that are not in talus.qgs
+    "title hillshade": ("Hillshade of the DEM", "Geländeschummerung"),
     "title vertices": ("Vertices of the paths", "Stützpunkte der Bahnen"),
     "title pits": ("Pits", "Mulden"),
     "title crossings": ("Crossings", "Durchgänge"),
