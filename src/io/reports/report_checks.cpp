@@ -121,19 +121,24 @@ void check_ends(const RunFacts& run, Checks& checks) {
 }
 
 void check_sizes(const RunFacts& run, Checks& checks) {
-  const std::string cell = with_digits(run.grid.cell_x, 4) + " m";
+  const std::string unit = run.of_profile ? "step" : "cell";  // of a profile the record has a grid of its steps
+  const std::string title = run.of_profile ? "Steps and blocks" : "Cells and blocks";
+  const std::string sizes = unit + "s of " + with_digits(run.grid.cell_x, 4) + " m";
   if (!run.diameters) {
-    checks.push_back({Mark::Look, "Cells and blocks", "cells of " + cell + "; diameters: see the settings",
-                      "A cell much larger than a block hides the ground that the block meets."});
+    checks.push_back({Mark::Look, title, sizes + "; diameters: see the settings",
+                      "A " + unit + " much larger than a block hides the ground that the block meets."});
   } else {
     const auto& [small, large] = *run.diameters;
     const bool wide = run.grid.cell_x > 5.0 * small;
-    checks.push_back({wide ? Mark::Look : Mark::Fine, "Cells and blocks",
-                      "cells of " + cell + ", blocks of " + with_digits(small, 3) + " to " + with_digits(large, 3) +
-                          " m: a cell is " + with_digits(run.grid.cell_x / large, 2) + " to " +
+    checks.push_back({wide ? Mark::Look : Mark::Fine, title,
+                      sizes + ", blocks of " + with_digits(small, 3) + " to " + with_digits(large, 3) + " m: a " +
+                          unit + " is " + with_digits(run.grid.cell_x / large, 2) + " to " +
                           with_digits(run.grid.cell_x / small, 2) + " diameters wide",
-                      "The ground between the centres of the cells is a smooth patch; its roughness is in the ground's "
-                      "parameters. Compare with a finer DEM where there is one."});
+                      run.of_profile
+                          ? "The ground between the steps is smooth; its roughness is in the ground's parameters. A "
+                            "profile over a DEM shows no more than the cells of the DEM, however short the step."
+                          : "The ground between the centres of the cells is a smooth patch; its roughness is in the "
+                            "ground's parameters. Compare with a finer DEM where there is one."});
   }
   const bool warned = warned_of(run, kOtherSizes);
   checks.push_back({warned ? Mark::Act : Mark::Fine, "Sizes of the blocks and the fit of the ground",
