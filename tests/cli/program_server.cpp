@@ -69,6 +69,7 @@ int serve(int, char** arguments, char** environment) {
   unsetenv("LD_PRELOAD");
   for (Request request; receive(socket, request);) {
     const pid_t child = fork();
+    if (child < 0) return 1;
     if (child == 0) {
       close(socket);
       return run(request, arguments[0], environment);

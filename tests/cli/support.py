@@ -131,24 +131,36 @@ class Program:
                 **self.environment, "LD_PRELOAD": os.environ["TALUS_SERVER"], "TALUS_SERVER": str(theirs.fileno())})
 
     def __del__(self):
+        self.end()
+
+    def end(self):
         self.socket.close()
+        self.process.kill()
         self.process.wait()
 
     def number(self):
-        return struct.unpack("i", self.socket.recv(4))[0]
+        answer = self.socket.recv(4)
+        if len(answer) != 4:
+            raise RuntimeError("the server of the program has ended")
+        return struct.unpack("i", answer)[0]
 
     def call(self, arguments, timeout, cwd=None):
         with tempfile.TemporaryFile("w+", encoding="utf-8") as out, tempfile.TemporaryFile("w+", encoding="utf-8") as err:
             words = b"".join(os.fsencode(word) + b"\0" for word in (cwd or os.getcwd(), *arguments))
             socket.send_fds(self.socket, [words], [out.fileno(), err.fileno()])
             self.socket.settimeout(timeout)
-            child = self.number()
+            child = None
             try:
+                child = self.number()
                 status = self.number()
-            except TimeoutError:
-                os.kill(child, signal.SIGKILL)
-                self.number()
-                raise subprocess.TimeoutExpired([TALUS, *arguments], timeout) from None
+            except BaseException as error:  # what it still has to say must not be taken for its next answer
+                if child is not None:
+                    os.kill(child, signal.SIGKILL)
+                del Program.of_thread.program
+                self.end()
+                if isinstance(error, TimeoutError):
+                    raise subprocess.TimeoutExpired([TALUS, *arguments], timeout) from None
+                raise
             out.seek(0), err.seek(0)
             return subprocess.CompletedProcess([TALUS, *arguments], os.waitstatus_to_exitcode(status), out.read(), err.read())
 

@@ -144,7 +144,11 @@ TEST_F(Campaigns, SemicolonsAndTabsSeparateAsWell) {
   write_text("blocks.csv", "id;x;y;release_height_m;mass_kg\na;600050,5;5200040;1;500\n");
   refused("", {"blocks.csv:2: x = '600050,5'", "with a point for decimals"});
   write_text("blocks.csv", "id;x\ty;release_height_m;mass_kg\na;600050;5200040;1;500\n");
-  refused("", {"blocks.csv:1: has one column, 'id;x", "all by semicolons"});
+  refused("", {"blocks.csv:1: has a column 'id;x", "all by semicolons"});
+  write_text("blocks.csv", "id;x;y;release_height_m;mass, kg\na;600050;5200040;1;500\n");
+  refused("", {"blocks.csv:1: has a column 'id;x", "all by semicolons"});
+  write_text("blocks.csv", "\n\nid;x;y;release_height_m;mass_kg\na;600050;5200040;1;500\n");
+  EXPECT_EQ(read().campaign.blocks[0].mass, 500.0);
   write_text("blocks.csv", "id,x,y,release_height_m,mass_kg\ra,600050,5200040,1,500\r");
   refused("", {"blocks.csv:1: lines must end with a line feed", "not with CR alone"});
 }

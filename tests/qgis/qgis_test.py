@@ -1161,7 +1161,6 @@ class FromPython(Case):
         self.assertEqual(found, wanted)
         self.assertEqual((hillshade.name(), hillshade.itemVisibilityChecked()), ("Hillshade of the DEM", True))
         self.assertEqual(hillshade.layer().renderer().type(), "hillshade")
-        self.assertFalse(os.path.exists(hillshade.layer().source() + ".aux.xml"))  # nothing is written beside the DEM
         return [node.layer() for node in results]
 
     def test_every_title_of_a_result_has_a_german_one(self):

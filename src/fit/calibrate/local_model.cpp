@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/normal_draws.hpp"
 #include "talus/base/elementary.hpp"
-#include "talus/base/random.hpp"
 #include "talus/fit/score/bootstrap.hpp"
 
 namespace talus {
@@ -34,19 +34,6 @@ Eigen::VectorXd row_weights(const Score& score, std::span<const double> block) {
           score.groups[row.group].weight * block[row.block] / total[row.group] / groups;
   }
   return weights;
-}
-
-/// Standard normal numbers of one draw.
-Eigen::VectorXd normals(std::uint64_t seed, std::uint32_t stream, std::uint32_t draw, Eigen::Index count) {
-  const Random random(seed, stream, draw, Purpose::Bootstrap);
-  Eigen::VectorXd z(count);
-  for (Eigen::Index i = 0; i < count; i += 4) {
-    const Words w = random.words(static_cast<std::uint32_t>(i / 4));
-    const auto a = normal_pair(w[0], w[1]), b = normal_pair(w[2], w[3]);
-    const double four[] = {a[0], a[1], b[0], b[1]};
-    for (Eigen::Index k = i; k < std::min(count, i + 4); ++k) z[k] = four[k - i];
-  }
-  return z;
 }
 
 }  // namespace
@@ -110,7 +97,8 @@ std::vector<Eigen::VectorXd> LocalModel::design(const FitProblem& problem, std::
   const Eigen::MatrixXd root = spread.llt().matrixL();
   std::vector<Eigen::VectorXd> places;
   for (int k = 0; k < count; ++k) {
-    Eigen::VectorXd z = centre + root * normals(seed, 3, first + static_cast<std::uint32_t>(k), centre.size());
+    Eigen::VectorXd z =
+        centre + root * normal_draws(seed, NormalDraw::Place, first + static_cast<std::uint32_t>(k), centre.size());
     for (Eigen::Index i = 0; i < z.size(); ++i)
       z[i] = std::clamp(z[i], problem.free[i].z(problem.free[i].lower), problem.free[i].z(problem.free[i].upper));
     places.push_back(std::move(z));
@@ -143,9 +131,9 @@ Eigen::VectorXd LocalModel::optimum(std::span<const double> block_weights, const
 Eigen::VectorXd LocalModel::draw(std::uint32_t draw) const {
   const Eigen::VectorXd weights = row_weights(score_, bootstrap_weights(problem_.streams(), draw, options_.seed));
   const Eigen::VectorXd noise =
-      noise_ * normals(options_.seed, 1, draw, noise_factor_.size()).cwiseProduct(noise_factor_);
+      noise_ * normal_draws(options_.seed, NormalDraw::Noise, draw, noise_factor_.size()).cwiseProduct(noise_factor_);
   const Eigen::VectorXd slope = from_v_ * model_->gradient(rows_ * weights - total_ + model_->coefficients(noise)) -
-                                2.0 * prior_ * normals(options_.seed, 2, draw, low_.size());
+                                2.0 * prior_ * normal_draws(options_.seed, NormalDraw::Prior, draw, low_.size());
   return centre_ + minimum_in_box(slope, curvature_, low_, high_);
 }
 

@@ -80,26 +80,41 @@ VectorXd Directions::add_free(const TestedModel& base, const Observer& observed,
   return steps;
 }
 
-/// Scores of a residual of block number i, by direction.
-VectorXd Directions::scores(std::size_t i, const VectorXd& whitened) const {
+VectorXd Directions::of_block(std::size_t i, const Residual& residual) const {
+  const VectorXd whitened = space_.whitened(residual);
   VectorXd s(size());
   for (Index k = 0; k < size(); ++k)
     s[k] = signatures_[static_cast<std::size_t>(k)].row(static_cast<Index>(i)).dot(whitened);
   return s;
 }
 
-void Directions::score_all(std::vector<MatrixXd>& trials, VectorXd& measured) const {
-  measured = VectorXd::Zero(size());
+CampaignScores Directions::scores() const {
+  CampaignScores out;
+  out.measured = VectorXd::Zero(size());
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    const BlockRuns& runs = base_[blocks_[i]];
+    const std::size_t block = blocks_[i];
+    MatrixXd u(size(), base_[block].trials);
+    for (Index t = 0; t < u.cols(); ++t)
+      u.col(t) = of_block(i, space_.of_own_trial(block, base_[block], static_cast<std::size_t>(t)));
+    out.means.emplace_back(u.rowwise().mean());
+    u.colwise() -= out.means.back();
+    out.measured += of_block(i, space_.of_measured(block)) - out.means.back();
+    out.trials.push_back(std::move(u));
+  }
+  return out;
+}
+
+std::vector<MatrixXd> Directions::scores_of(const std::vector<BlockRuns>& moved,
+                                            const std::vector<VectorXd>& means) const {
+  std::vector<MatrixXd> trials;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const BlockRuns& runs = moved[blocks_[i]];
     MatrixXd u(size(), runs.trials);
-    for (std::size_t t = 0; t < runs.trials; ++t)
-      u.col(static_cast<Index>(t)) = scores(i, space_.whitened(space_.of_own_trial(blocks_[i], runs, t)));
-    const VectorXd mean = u.rowwise().mean();
-    u.colwise() -= mean;
-    measured += scores(i, space_.whitened(space_.of_measured(blocks_[i]))) - mean;
+    for (Index t = 0; t < u.cols(); ++t)
+      u.col(t) = of_block(i, space_.of_trial(blocks_[i], runs, static_cast<std::size_t>(t))) - means[i];
     trials.push_back(std::move(u));
   }
+  return trials;
 }
 
 MatrixXd covariance_of(const std::vector<MatrixXd>& trials) {

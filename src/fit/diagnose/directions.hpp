@@ -8,6 +8,13 @@
 
 namespace talus {
 
+/// Scores of a campaign by all directions, each less the mean of its block's base trials.
+struct CampaignScores {
+  std::vector<Eigen::MatrixXd> trials;  ///< by block: those of its base trials, one column each
+  std::vector<Eigen::VectorXd> means;   ///< by block
+  Eigen::VectorXd measured;             ///< of the measurements, summed over the blocks
+};
+
 /// Signatures of all directions in which the model could move: how each changes the residuals of the blocks.
 class Directions {
  public:
@@ -24,12 +31,14 @@ class Directions {
   Eigen::Index size() const { return std::ssize(signatures_); }
   std::span<const std::uint32_t> streams() const { return streams_; }
 
-  /// @param trials    by block: the scores of its base trials, one column each
-  /// @param measured  the scores of the measurements, summed over the blocks
-  void score_all(std::vector<Eigen::MatrixXd>& trials, Eigen::VectorXd& measured) const;
+  CampaignScores scores() const;
+  /// By block: the scores of trials of a moved base, as if they had been measured; one column each.
+  std::vector<Eigen::MatrixXd> scores_of(const std::vector<BlockRuns>& moved,
+                                         const std::vector<Eigen::VectorXd>& means) const;
 
  private:
-  Eigen::VectorXd scores(std::size_t i, const Eigen::VectorXd& whitened) const;
+  /// Scores of a residual of block number i, by direction.
+  Eigen::VectorXd of_block(std::size_t i, const Residual& residual) const;
 
   const ResidualSpace& space_;
   const std::vector<BlockRuns>& base_;

@@ -119,9 +119,9 @@ std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Index 
   return places;
 }
 
-Projection::Projection(const TestedPlace& place, const MatrixXd& covariance, const VectorXd& steps, double prior)
+Projection::Projection(const TestedPlace& place, const MatrixXd& covariance, Index base, const VectorXd& steps,
+                       double prior)
     : steps_(steps), one_sided_(place.one_sided) {
-  const Index base = steps.size();
   MatrixXd information = covariance.topLeftCorner(base, base);
   information.diagonal().array() += prior;
   MatrixXd imitated = MatrixXd::Zero(place.pick.cols(), covariance.rows());

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "directions.hpp"
-#include "talus/fit/campaign/block_draws.hpp"
+#include "null_scores.hpp"
 #include "talus/fit/diagnose/projection.hpp"
 #include "talus/fit/diagnose/residual.hpp"
 
@@ -16,32 +15,16 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The score of every direction in data set number `replicate`: one trial of each block stands in for what was
-/// measured.
-VectorXd drawn(const std::vector<MatrixXd>& trials, std::span<const std::uint32_t> streams, std::uint64_t seed,
-               std::uint32_t replicate) {
-  VectorXd scores = VectorXd::Zero(trials.front().rows());
-  for (std::size_t b = 0; b < trials.size(); ++b) {
-    const double place =
-        draw_of_block(seed, streams[b], replicate, BlockDraw::Trial) * static_cast<double>(trials[b].cols());
-    scores += trials[b].col(static_cast<Index>(place));
-  }
-  return scores;
-}
-
-/// The smallest p-value over the places of each effect, in data sets drawn from the model.
+/// The smallest p-value over the places of each effect, in data sets without an effect.
 std::vector<std::vector<double>> smallest_drawn(std::size_t effects, const std::vector<Projection>& projections,
-                                                const std::vector<std::size_t>& effect_of,
-                                                const std::vector<MatrixXd>& trials,
-                                                std::span<const std::uint32_t> streams,
+                                                const std::vector<std::size_t>& effect_of, const MatrixXd& sets,
                                                 const ScoreTestOptions& options) {
-  const auto n = static_cast<std::uint32_t>(options.replicates);
-  std::vector<std::vector<double>> smallest(effects, std::vector<double>(n, 1.0));
-  for (std::uint32_t replicate = 0; replicate < n; ++replicate) {
-    if (replicate % 1000 == 999 && options.proceed && !options.proceed()) throw FitInterrupted{};
-    const VectorXd scores = drawn(trials, streams, options.seed, replicate);
+  std::vector<std::vector<double>> smallest(effects, std::vector<double>(static_cast<std::size_t>(sets.cols()), 1.0));
+  for (Index set = 0; set < sets.cols(); ++set) {
+    if (set % 1000 == 999 && options.proceed && !options.proceed()) throw FitInterrupted{};
+    const VectorXd scores = sets.col(set);
     for (std::size_t i = 0; i < projections.size(); ++i) {
-      double& best = smallest[effect_of[i]][replicate];
+      double& best = smallest[effect_of[i]][static_cast<std::size_t>(set)];
       best = std::min(best, projections[i].verdict(scores).p_value);
     }
   }
@@ -85,6 +68,14 @@ void sharpen(const Eigen::VectorXd& errors, const std::vector<std::size_t>& memb
   }
 }
 
+/// Adds the direction of the factor on the radius at an impact (`shape`), which no fit moves: a ground of another one
+/// must not be taken for an effect.
+void add_shape(Directions& directions, const Model& base, const DiagnosisRules& rules, const Observer& observed) {
+  Model moved = base;
+  for (Ground& ground : moved.grounds) ground.shape_max += rules.other_shape;
+  directions.add(observed(moved));
+}
+
 /// Adds the directions of the candidates.
 void add_candidates(Directions& directions, const Model& base, std::span<const Candidate> candidates,
                     const DiagnosisRules& rules, const Observer& observed) {
@@ -96,17 +87,25 @@ void add_candidates(Directions& directions, const Model& base, std::span<const C
     }
 }
 
-/// Runs with the random numbers of the test.
-Observer observer_of(const Campaign& campaign, const std::vector<bool>& rows, const ScoreTestOptions& options) {
-  return [&](const Model& model) {
+/// Runs of the asked blocks with the random numbers of the test.
+TrialObserver trials_of(const Campaign& campaign, const std::vector<bool>& rows, const ScoreTestOptions& options) {
+  return [&](const Model& model, std::uint32_t trials, std::uint32_t first) {
     if (options.proceed && !options.proceed()) throw FitInterrupted{};
     return observe(campaign, model,
-                   {.trials = options.trials,
+                   {.trials = trials,
                     .seed = options.seed,
+                    .first_trial = first,
                     .threads = options.threads,
                     .blocks = rows,
                     .effort = effort_of(options.rules.search),
                     .traced = options.traced});
+  };
+}
+
+/// The same for the signatures: the same trials of every model.
+Observer observer_of(const Campaign& campaign, const std::vector<bool>& rows, const ScoreTestOptions& options) {
+  return [trials = options.trials, observed = trials_of(campaign, rows, options)](const Model& model) {
+    return observed(model, trials, 0);
   };
 }
 
@@ -122,14 +121,12 @@ OwnScores own_scores(const Campaign& campaign, const TestedModel& at, const Vect
   const ResidualSpace space(campaign, at.runs, rules);
   Directions directions(campaign, space, at.runs, observed(at.model), rows);
   const VectorXd steps = directions.add_free(at, observed, rules);
-  std::vector<MatrixXd> trials;
-  VectorXd measured;
-  directions.score_all(trials, measured);
-  MatrixXd information = covariance_of(trials);
+  const CampaignScores scores = directions.scores();
+  MatrixXd information = covariance_of(scores.trials);
   information.diagonal().array() += step_prior(rules);
   const Eigen::LDLT<MatrixXd> solver(information);
   const VectorXd pull = step_prior(rules) * moved.cwiseQuotient(steps);
-  return {steps.cwiseProduct(solver.solve(measured - pull)), measured.dot(solver.solve(measured))};
+  return {steps.cwiseProduct(solver.solve(scores.measured - pull)), scores.measured.dot(solver.solve(scores.measured))};
 }
 
 }  // namespace
@@ -194,16 +191,19 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
   const ResidualSpace space(campaign, base.runs, rules);
   Directions directions(campaign, space, base.runs, observed(base.model), rows);
   const VectorXd steps = directions.add_free(base, observed, rules);
+  add_shape(directions, base.model, rules, observed);
+  const Index of_base = directions.size();
   add_candidates(directions, base.model, candidates, rules, observed);
-  std::vector<MatrixXd> trials;
-  VectorXd measured;
-  directions.score_all(trials, measured);
-  const MatrixXd covariance = covariance_of(trials);
+  const CampaignScores scores = directions.scores();
+  const MatrixXd covariance = covariance_of(scores.trials);
+  const OpenGrounds grounds(base, steps, scores, covariance, rules);
+  const NullScores null = null_scores(grounds, directions, scores.means, trials_of(campaign, rows, options), options);
+  const VectorXd measured = scores.measured - null.mean;
   ScoreTest test;
   std::vector<Projection> projections;
   std::vector<std::size_t> effect_of;
-  for (const TestedPlace& place : places_of(candidates, steps.size(), directions.size(), rules)) {
-    projections.emplace_back(place, covariance, steps, step_prior(rules));
+  for (const TestedPlace& place : places_of(candidates, of_base, directions.size(), rules)) {
+    projections.emplace_back(place, covariance, of_base, steps, step_prior(rules));
     Verdict verdict = projections.back().verdict(measured);
     verdict.members = place.members;
     const std::string& name = candidates[place.members.front()].effect;
@@ -216,7 +216,7 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
     sharpen(projections.back().standard_errors(), place.members, candidates[place.members.front()], *effect);
     effect_of.push_back(static_cast<std::size_t>(effect - test.effects.begin()));
   }
-  correct(test, smallest_drawn(test.effects.size(), projections, effect_of, trials, directions.streams(), options));
+  correct(test, smallest_drawn(test.effects.size(), projections, effect_of, null.sets, options));
   std::sort(test.effects.begin(), test.effects.end(), [](const EffectVerdict& a, const EffectVerdict& b) {
     return a.p_value != b.p_value ? a.p_value < b.p_value : more_significant(a.best, b.best);
   });

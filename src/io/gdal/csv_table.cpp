@@ -21,13 +21,19 @@ std::string content_of(const std::string& path) {
   return text;
 }
 
+/// The first line that is not empty.
+std::string_view first_line(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of("\r\n"), text.size()));
+  return text.substr(0, text.find_first_of("\r\n"));
+}
+
 /// Cuts a text into rows and cells. A cell in quotation marks may hold separators, line ends and doubled marks.
 void split(const std::string& text, const std::string& path, const std::function<void(CsvTable::Row)>& take) {
   std::vector<std::string> cells;
   std::string cell;
   int line = 1, start = 1;
   bool quoted = false, was_quoted = false;
-  const char separator = separator_of(std::string_view(text).substr(0, text.find_first_of("\r\n"))).value_or(',');
+  const char separator = separator_of(first_line(text)).value_or(',');
   const auto end_cell = [&] {
     if (!is_utf8(cell)) throw InputError(path + ":" + std::to_string(start) + ": '" + cell + "' " + kEncodingFault);
     cells.push_back(was_quoted ? cell : trimmed(cell));
@@ -138,8 +144,9 @@ void CsvTable::read_header(std::vector<std::string> columns, const std::vector<s
   if (std::ranges::any_of(columns_, [](const std::string& c) { return c.find('\r') != std::string::npos; }))
     throw InputError(path_ +
                      ":1: lines must end with a line feed (LF or CR LF), not with CR alone: save it as CSV again");
-  if (columns_.size() == 1 && columns_[0].find_first_of(";\t") != std::string::npos)
-    throw InputError(path_ + ":1: has one column, '" + columns_[0] +
+  const auto other = std::ranges::find_if(columns_, [](const auto& c) { return c.find_first_of(";\t") != c.npos; });
+  if (other != columns_.end())
+    throw InputError(path_ + ":1: has a column '" + *other +
                      "': cells must all be separated by commas, all by semicolons or all by tabs: save it as CSV");
   std::vector<std::string> unknown;
   std::ranges::copy_if(columns_, std::back_inserter(unknown), [&](const std::string& column) {

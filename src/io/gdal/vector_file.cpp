@@ -23,6 +23,15 @@ bool ends_with(const std::string& path, const char* end) {
   return path.size() > length && EQUAL(path.c_str() + path.size() - length, end);
 }
 
+/// Whether a blank stands outside quotation marks: GDAL takes it for what separates cells, if nothing else does.
+bool has_bare_blank(std::string_view header) {
+  bool quoted = false;
+  return std::ranges::any_of(header, [&](char c) {
+    quoted ^= c == '"';
+    return c == ' ' && !quoted;
+  });
+}
+
 std::string lower_trimmed(const std::string& text) {
   return lowercase(trimmed(text));
 }
@@ -169,9 +178,7 @@ std::optional<std::string> geometry_column(const std::string& path) {
 }
 
 CsvStructure::CsvStructure(std::string path, std::string_view header)
-    : path_(std::move(path)),
-      separator_(separator_of(header).value_or(
-          header.find('"') == header.npos && header.find(' ') != header.npos ? ' ' : ',')) {}
+    : path_(std::move(path)), separator_(separator_of(header).value_or(has_bare_blank(header) ? ' ' : ',')) {}
 
 void CsvStructure::take(std::string_view text) {
   for (const char c : text) take(c);

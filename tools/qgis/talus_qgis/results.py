@@ -149,9 +149,7 @@ def _hillshade_of(folder):
         return None
     if not os.path.isfile(path):
         return None
-    options = QgsRasterLayer.LayerOptions()
-    options.loadDefaultStyle = False  # for which QGIS would write statistics beside the DEM
-    layer = QgsRasterLayer(path, tr("title hillshade"), "gdal", options)
+    layer = QgsRasterLayer(path, tr("title hillshade"))
     shade = QgsHillshadeRenderer(layer.dataProvider(), 1, 315, 45)
     shade.setMultiDirectional(True)
     layer.setRenderer(shade)

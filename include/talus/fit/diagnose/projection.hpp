@@ -14,8 +14,8 @@ struct TestedPlace {
   std::vector<bool> one_sided;       ///< by tested parameter: it cannot be below zero
 };
 
-/// Every place of every candidate: alone; neighbouring bands joined; sets of days. The directions are those of the
-/// base's parameters, then the tested ones of each candidate in turn.
+/// Every place of every candidate: alone; neighbouring bands joined; sets of days. The first `base` directions
+/// are those of the base, then come the tested ones of each candidate in turn.
 std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Eigen::Index base, Eigen::Index directions,
                                    const DiagnosisRules& rules = {});
 
@@ -25,9 +25,11 @@ std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Eigen:
 class Projection {
  public:
   /// @param covariance  of the scores of one data set under the model; directions x directions
+  /// @param base        number of the first directions, those of the base: its parameters, then the upper limit of `shape`
   /// @param steps       by which the base's parameters were moved [z]
   /// @param prior       precision of a step of the base
-  Projection(const TestedPlace& place, const Eigen::MatrixXd& covariance, const Eigen::VectorXd& steps, double prior);
+  Projection(const TestedPlace& place, const Eigen::MatrixXd& covariance, Eigen::Index base,
+             const Eigen::VectorXd& steps, double prior);
 
   /// @param scores  by direction, summed over the blocks
   ///

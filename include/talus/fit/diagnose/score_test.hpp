@@ -30,7 +30,7 @@ struct ScoreTest {
   double p_value = 1.0;                ///< of the most significant one, corrected for all effects and places
 };
 
-/// P-values among data sets that the model itself has made.
+/// P-values among simulated data sets.
 struct Corrected {
   std::vector<double> effects;  ///< by effect: share of all sets, the measured one included, with one as small
   double all = 1.0;             ///< the p-value of the most unlikely effect
@@ -92,7 +92,8 @@ SettledModel settled_model(const Campaign& campaign, const TestedModel& fitted, 
 ///
 /// The residual of each block is compared with the one that a small amount of the candidate would leave (simulated: its
 /// signature). The part that a change of the model's free parameters could imitate is taken out. The same is done with
-/// data sets drawn from the model itself, which gives the p-values: one trial per block stands in for the measurement.
+/// data sets without an effect, which gives the p-values: one trial per block, of a ground that the measurements leave
+/// open, stands in for the measurement.
 ///
 /// @param rows  the blocks that are used; size: blocks
 ///

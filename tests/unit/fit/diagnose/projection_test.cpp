@@ -59,7 +59,7 @@ TEST(ChiBar, TheProjectionUsesTheCorrelationOfTheEstimates) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   covariance(1, 2) = covariance(2, 1) = 0.6;
   TestedPlace place{{0}, Eigen::MatrixXd::Identity(3, 3).rightCols(2), {true, true}};
-  const Projection projection(place, covariance, Eigen::VectorXd::Ones(1), 1.0);
+  const Projection projection(place, covariance, 1, Eigen::VectorXd::Ones(1), 1.0);
   const Verdict v = projection.verdict(Eigen::Vector3d(0.0, 2.0, 2.0));
   EXPECT_NEAR(v.p_value, chi_bar_tail(v.statistic, 2, 2, -0.6), 1e-6);
 }
@@ -69,9 +69,9 @@ TEST(ChiBar, TheProjectionUsesTheCorrelationOfTheEstimates) {
 TEST(StandardErrors, LoseWhatTheGroundImitates) {
   const Eigen::Matrix2d covariance{{4.0, 3.0}, {3.0, 9.0}};
   const TestedPlace place{{0}, Eigen::Vector2d(0.0, 1.0), {true}};
-  const Projection held(place, covariance, Eigen::VectorXd::Ones(1), 1e12);
+  const Projection held(place, covariance, 1, Eigen::VectorXd::Ones(1), 1e12);
   EXPECT_NEAR(held.standard_errors()[0], 1.0 / 3.0, 1e-6);
-  const Projection free(place, covariance, Eigen::VectorXd::Ones(1), 1e-12);
+  const Projection free(place, covariance, 1, Eigen::VectorXd::Ones(1), 1e-12);
   EXPECT_NEAR(free.standard_errors()[0], 1.0 / std::sqrt(9.0 - 9.0 / 4.0), 1e-6);
 }
 
@@ -81,7 +81,7 @@ TEST(StandardErrors, LoseWhatTheGroundImitates) {
 /// (With the gradient of the prior in the score the ground would not move, and all of it would pass for the effect.)
 TEST(Prior, ThatHoldsTheGroundBackIsHardlyTakenForAnEffect) {
   const Eigen::Matrix2d covariance{{4.0, 3.0}, {3.0, 9.0}};
-  const Projection projection({{0}, Eigen::Vector2d(0.0, 1.0), {false}}, covariance, Eigen::VectorXd::Ones(1), 1.0);
+  const Projection projection({{0}, Eigen::Vector2d(0.0, 1.0), {false}}, covariance, 1, Eigen::VectorXd::Ones(1), 1.0);
   const double short_by = 0.6, held = 3.0 * short_by, moved = held / 5.0;
   const Eigen::Vector2d scores = short_by * Eigen::Vector2d(4.0, 3.0);
   const double information = 9.0 - 2.0 * 9.0 / 5.0 + 4.0 * 9.0 / 25.0;
@@ -91,7 +91,7 @@ TEST(Prior, ThatHoldsTheGroundBackIsHardlyTakenForAnEffect) {
 /// Two independent estimates of which only the second may be negative: the bounded optimum by hand.
 TEST(Projection, TheEstimateStaysWithinItsBounds) {
   TestedPlace place{{0}, Eigen::MatrixXd::Identity(3, 3).rightCols(2), {true, false}};
-  const Projection projection(place, Eigen::MatrixXd::Identity(3, 3), Eigen::VectorXd::Ones(1), 1.0);
+  const Projection projection(place, Eigen::MatrixXd::Identity(3, 3), 1, Eigen::VectorXd::Ones(1), 1.0);
   const Verdict v = projection.verdict(Eigen::Vector3d(0.0, -2.0, -2.0));
   EXPECT_EQ(v.estimate[0], 0.0);
   EXPECT_NEAR(v.estimate[1], -2.0, 1e-6);
