@@ -410,14 +410,15 @@ TEST(ScoreTest, IsSilentAboutTheModelsOwnDataAsOftenAsItSays) {
   EXPECT_LE(halves, 16);
 }
 
-/// 20 data sets of a ground whose factor on the radius goes up to 1.2, not to the 1.5 of the model. No fit moves it; it
-/// must not be taken for a bias of the instruments more often than the test says.
+/// 20 data sets of a ground whose factor on the radius goes up to 1.15, not to the 1.5 of the model. No fit moves it;
+/// it must not be taken for a bias of the instruments more often than the test says. (Without its direction: 12
+/// alarms.)
 TEST(ScoreTest, AnotherShapeIsNoEffect) {
   Campaign c = slope_campaign(30);
   const Model model = model_of_preset(c, "upper-talus-3d");
   ASSERT_EQ(model.grounds[0].shape_max, 1.5);
   Model truth = model;
-  truth.grounds[0].shape_max = 1.2;
+  truth.grounds[0].shape_max = 1.15;
   measure(c, truth, 100);
   std::vector<Candidate> list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
   std::erase_if(list, [](const Candidate& x) { return x.effect != "instrument-bias"; });

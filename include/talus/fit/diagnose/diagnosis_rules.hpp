@@ -49,11 +49,11 @@ struct DiagnosisRules {
   double settled = 1.0;
   /// Longest of these steps, by the parameter that moves most [z]: the standard deviation of its prior.
   double longest_move = 1.0;
-  /// By how much the upper limit of `shape` is moved in the test, in all zones together [-]. The standard deviation that
-  /// it is given is this times base_sd / base_step, 0.2: presets have 1.5, spheres 1.
+  /// By how much the upper limit of `shape` is moved in the test, in all zones together [-]. The standard deviation
+  /// that it is given is this times base_sd / base_step, 0.2: presets have 1.5, spheres 1.
   double other_shape = 0.1;
-  /// Grounds among those that the measurements leave open from which data sets without an effect are drawn, in pairs [-]:
-  /// of 2000 sets each gives 21.
+  /// Grounds among those that the measurements leave open from which data sets without an effect are drawn, in pairs
+  /// [-]: of 2000 sets each gives 21.
   int open_grounds = 96;
 
   // The families

@@ -25,7 +25,8 @@ std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Eigen:
 class Projection {
  public:
   /// @param covariance  of the scores of one data set under the model; directions x directions
-  /// @param base        number of the first directions, those of the base: its parameters, then the upper limit of `shape`
+  /// @param base        number of the first directions, those of the base: its parameters, then the upper limit of
+  /// `shape`
   /// @param steps       by which the base's parameters were moved [z]
   /// @param prior       precision of a step of the base
   Projection(const TestedPlace& place, const Eigen::MatrixXd& covariance, Eigen::Index base,
