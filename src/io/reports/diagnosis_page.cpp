@@ -302,9 +302,9 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
   html += spread_html(record);
   html +=
       "<h2>Families</h2>\n<p>Effects that leave the same kind of trace are tested together, by one test of few degrees "
-      "of freedom. Only an effect of a significant family may be named. The p of instrument is too small: of 60 "
-      "campaigns that were simulated without an effect 17 % had one of 5 % or less, 25 % where blocks of a group "
-      "shared a ground and an error (docs/diagnosis-results.md).</p>\n";
+      "of freedom. Only an effect of a significant family may be named. How often p is 5 % or less in campaigns "
+      "without "
+      "an effect: docs/diagnosis-results.md.</p>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
     html += "<h3>Round "_html + std::to_string(i + 1) + "</h3>\n" + families_table(d.rounds[i]) +
             settling_text(d.rounds[i].settling);
