@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/normal_draws.hpp"
+#include "normal_draws.hpp"
 #include "talus/base/elementary.hpp"
 #include "talus/fit/score/bootstrap.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/normal_draws.hpp"
+#include "fit/calibrate/normal_draws.hpp"
 #include "talus/fit/campaign/block_draws.hpp"
 
 namespace talus {
