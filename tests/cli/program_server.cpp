@@ -85,7 +85,7 @@ int serve(int, char** arguments, char** environment) {
 
 }  // namespace
 
-/// What the C library calls before `main`.
+/// Start of the program in the C library, which calls `main`.
 extern "C" int __libc_start_main(Main main, int count, char** arguments, void (*init)(), void (*fini)(),
                                  void (*rtld_fini)(), void* stack_end) {
   program_main = main;

@@ -35,7 +35,7 @@ class FaultList {
         feature_(std::move(feature)),
         before_(path_ + ": " + feature_ + " "),
         after_(std::move(after)) {}
-  /// Of the lines of a text file.
+  /// Faults of the lines of a text file.
   explicit FaultList(std::string path) : path_(std::move(path)), feature_("line"), before_(path_ + ":") {}
 
   /// How the faults of a feature begin: "cliffs.gpkg: feature 12", "trees.csv: row 12 below the header"; of a line:

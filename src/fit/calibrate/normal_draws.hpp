@@ -6,7 +6,7 @@
 
 namespace talus {
 
-/// What normal numbers that belong to no block decide. The words are the streams of their random numbers.
+/// Uses of normal numbers that belong to no block. Each use has a stream of random numbers, its value.
 enum class NormalDraw : std::uint32_t {
   Noise = 1,       ///< of a bootstrap, beyond its measured noise
   Prior = 2,       ///< of a bootstrap: the centre of the prior

@@ -102,7 +102,7 @@ TrialObserver trials_of(const Campaign& campaign, const std::vector<bool>& rows,
   };
 }
 
-/// The same for the signatures: the same trials of every model.
+/// Runs for the signatures: every model has the same trials.
 Observer observer_of(const Campaign& campaign, const std::vector<bool>& rows, const ScoreTestOptions& options) {
   return [trials = options.trials, observed = trials_of(campaign, rows, options)](const Model& model) {
     return observed(model, trials, 0);

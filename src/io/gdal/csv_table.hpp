@@ -15,8 +15,8 @@ std::optional<double> number_of_cell(const std::string& text);
 /// A text without the blanks around it.
 std::string trimmed(const std::string& text);
 
-/// What separates cells, as GDAL finds it too: the one of comma, semicolon and tab that is in the header, the comma
-/// where several are; nothing where none is.
+/// Separator of the cells: a comma, semicolon or tab, whichever the header has; the comma if it has several of these;
+/// nothing if it has none. GDAL finds it in the same way.
 std::optional<char> separator_of(std::string_view header);
 
 /// Throws InputError if the text of a file begins as UTF-16 does.
