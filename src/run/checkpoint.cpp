@@ -12,6 +12,7 @@
 #include "io/files/json.hpp"
 #include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
@@ -60,6 +61,30 @@ Rounds rounds_of(const Json& json) {
 
 std::string manifest_text(const Json& manifest) {
   return manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+/// " (seed 2 instead of 1, another content of the file of dem)": what differs between two records of a plan. Empty where
+/// no record tells it.
+std::string differences(const std::vector<Setting>& before, const std::vector<Setting>& now,
+                        const std::vector<io::InputFile>& files_before, const std::vector<io::InputFile>& files_now) {
+  std::vector<std::string> words;
+  const auto value_in = [](const std::vector<Setting>& settings, const std::string& key) {
+    const auto found = std::ranges::find(settings, key, &Setting::key);
+    return found == settings.end() ? std::string("none") : found->value;
+  };
+  for (const Setting& s : now)
+    if (const std::string was = value_in(before, s.key); was != s.value)
+      words.push_back(s.key + " " + s.value + " instead of " + was);
+  for (const Setting& s : before)
+    if (std::ranges::find(now, s.key, &Setting::key) == now.end())
+      words.push_back("no " + s.key + " instead of " + s.value);
+  for (const io::InputFile& file : files_now) {
+    if (file.role == "scenario" || file.role == "include") continue;  // their settings are above
+    const auto was = std::ranges::find(files_before, file.role, &io::InputFile::role);
+    if (was == files_before.end() || was->sha256 != file.sha256)
+      words.push_back("another content of the file of " + file.role);
+  }
+  return words.empty() ? "" : " (" + listed(words) + ")";
 }
 
 /// Pairs of name and checksum, in a manifest.
@@ -310,7 +335,8 @@ void Checkpoint::read_manifest() {
   if (io::understood(file, "must be as this version of Talus has written it; run this part again", read) != plan_)
     throw InputError(file.string() +
                      ": belongs to another plan: the scenario, a flag or a file is not what it was when this was "
-                     "traced. To go on (--resume) give the same again, with the same seed and trajectories, or begin "
+                     "traced" +
+                     differences(settings_, loaded_->settings, inputs_, loaded_->inputs) + ". To go on (--resume) give the same again, with the same seed and trajectories, or begin "
                      "anew (--overwrite); to merge give parts of the plan of the first one");
 }
 

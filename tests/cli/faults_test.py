@@ -212,7 +212,7 @@ class Inputs(Faults):
         shutil.copy(self.path("dem.tif"), self.path("old.tif"))
         write_dem(self.path("dem.tif"), heights() + 100)
         again = [*self.begin, "-q", *LONG, "--resume"]
-        self.fails(2, "another plan", arguments=again)
+        self.fails(2, "another plan", "(another content of the file of dem)", arguments=again)
         self.assertEqual(len(self.unfinished("out")), 1)
         shutil.move(self.path("old.tif"), self.path("dem.tif"))
         self.goes_on(*LONG)

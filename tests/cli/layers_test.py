@@ -244,7 +244,7 @@ class Layers(Case):
         self.write_sources("bad.gpkg", ogr.OFTReal, [-1.0, 1.0, 5000.0, None])
         nets = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("nets.gpkg"))
         layer = nets.CreateLayer("nets", system(2056), ogr.wkbLineString)
-        for name in "height", "capacity":
+        for name in "height", "capacity", "Baujahr":
             layer.CreateField(ogr.FieldDefn(name, ogr.OFTReal))
         for height in (3.0, -2.0):
             feature = ogr.Feature(layer.GetLayerDefn())
@@ -273,7 +273,8 @@ class Layers(Case):
         nets = layer = feature = None
         said = self.run_well("check", self.write("good.toml", scenario.format(good))).stdout
         self.assertIn("good.gpkg: fields read: diameter 1 to 2 m (2 of 3 features, 1 empty)", said)
-        self.assertIn("nets.gpkg: fields read: height 3 m (2 of 2 features), capacity 401 to 402 kJ (2 of 2 features)", said)
+        self.assertIn("nets.gpkg: fields read: height 3 m (2 of 2 features), capacity 401 to 402 kJ (2 of 2 features); "
+                      "others: Baujahr", said)
 
     def test_features_have_the_number_that_qgis_shows(self):
         source = self.write_sources("plain.gpkg", ogr.OFTReal, [1.0, 1.5], "frequency")

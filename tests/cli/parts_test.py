@@ -145,7 +145,7 @@ class Parts(KeptRuns, RunCase):
         one, two = self.path("part1"), self.path("part2")
         done = self.run_well("run", self.path("s.toml"), "-o", one, "--part", "1/2", "--resume")  # a task that was requeued
         self.assertIn("part 1/2 is done", done.stderr)
-        self.fails(2, "another plan",
+        self.fails(2, "another plan", "(seed 9 instead of ",
                    arguments=["run", self.path("s.toml"), "-o", one, "--part", "1/2", "--resume", "--seed", "9"])
         self.fails(2, "1 of 2 parts are given, part 2 is the first", arguments=["merge", self.path("m"), one])
         self.fails(2, "give each part once", arguments=["merge", self.path("m"), one, one])
@@ -153,7 +153,7 @@ class Parts(KeptRuns, RunCase):
         empty = self.run_well("run", self.path("s.toml"), "-o", self.path("empty"), "--part", "1/99999")
         self.assertIn("is empty: the plan has", empty.stderr)
         self.run_scenario("other", "--part", "2/2", "--seed", "9")
-        self.fails(2, "another plan", arguments=["merge", self.path("m"), one, self.path("other")])
+        self.fails(2, "another plan", " instead of 9)", arguments=["merge", self.path("m"), one, self.path("other")])
         self.run_scenario("rounds", "--part", "2/2", "--rounds", "2")
         self.fails(2, "the same --rounds", arguments=["merge", self.path("m"), one, self.path("rounds")])
         with self.manifest(two) as manifest:  # as if it had been interrupted after the first of two

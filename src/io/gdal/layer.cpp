@@ -369,10 +369,14 @@ CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, CellRule rule) {
   return mask;
 }
 
-std::string fields_note(const std::string& path, const std::vector<FieldUse>& fields, std::size_t features) {
-  std::vector<std::string> words;
+std::string fields_note(const std::string& path, const std::vector<FieldUse>& fields, std::size_t features,
+                        const std::vector<std::string>& there) {
+  if (fields.empty()) return path + ": no field is read" + (there.empty() ? "" : "; there are " + joined(there));
+  std::vector<std::string> words, others;
   for (const FieldUse& use : fields) words.push_back(use.text(features));
-  return path + ": fields read: " + joined(words);
+  for (const std::string& field : there)
+    if (std::ranges::find(fields, field, &FieldUse::field) == fields.end()) others.push_back(field);
+  return path + ": fields read: " + joined(words) + (others.empty() ? "" : "; others: " + joined(others));
 }
 
 }  // namespace talus::io

@@ -158,7 +158,10 @@ void for_each_cell(const OGRGeometry& geometry, const Grid& grid, CellRule rule,
   for_each_cell(mask_of(geometry, grid, rule), visit);
 }
 
-/// "cliffs.gpkg: fields read: diameter 0.5 to 2 m (2 of 3 features, 1 empty), name (3 of 3 features)".
-std::string fields_note(const std::string& path, const std::vector<FieldUse>& fields, std::size_t features);
+/// "cliffs.gpkg: fields read: diameter 0.5 to 2 m (2 of 3 features, 1 empty), name (3 of 3 features); others: area".
+///
+/// @param there  all fields of the layer
+std::string fields_note(const std::string& path, const std::vector<FieldUse>& fields, std::size_t features,
+                        const std::vector<std::string>& there);
 
 }  // namespace talus::io

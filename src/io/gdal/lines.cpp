@@ -116,7 +116,8 @@ class LineReader {
     off_.warn(path_, "features", brought_from(layer_), out.warnings);
     if (id_ < 0)
       out.notes.push_back(path_ + ": no field id or name: the lines are called by the numbers of their features");
-    if (!uses_.empty()) out.notes.push_back(fields_note(path_, uses_, features_));
+    const std::vector<std::string> there = layer_.field_names();
+    if (!there.empty()) out.notes.push_back(fields_note(path_, uses_, features_, there));
     layer_.tell(out);
   }
 

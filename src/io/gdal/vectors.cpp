@@ -108,12 +108,7 @@ class AttributeReader {
   }
 
   std::string read_note() const {
-    const std::vector<std::string> there = layer_.field_names();
-    if (columns_.empty()) return path_ + ": no field is read" + (there.empty() ? "" : "; there are " + joined(there));
-    std::vector<std::string> others;
-    for (const std::string& field : there)
-      if (!is_read(field)) others.push_back(field);
-    return fields_note(path_, columns_, features_) + (others.empty() ? "" : "; others: " + joined(others));
+    return fields_note(path_, columns_, features_, layer_.field_names());
   }
 
   /// A line for each field that looks as if it were meant.

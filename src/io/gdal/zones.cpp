@@ -112,7 +112,7 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
   if (idle.all_off(features)) throw InputError(off_dem_text(request.path, idle.box(), layer, terrain));
   if (features == 0) out.warnings.push_back(request.path + ": has no features: the default ground is everywhere");
   idle.warn(out.zones, out.warnings);
-  out.notes.push_back(fields_note(request.path, {use}, features));
+  out.notes.push_back(fields_note(request.path, {use}, features, layer.field_names()));
   index.warn_unseen(out.warnings);
   out.presets = index.named_presets();
   layer.tell(out);
