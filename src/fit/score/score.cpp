@@ -54,12 +54,13 @@ class Scorer {
   }
 
   void stops() {
-    FittingValues<Eigen::Vector2d> fitting;
+    FittingValues<Eigen::Vector2d> fitting, ways;
     std::vector<double> x, y;
     for (std::uint32_t b = 0; b < campaign_.blocks.size(); ++b) {
       const MeasuredBlock& block = campaign_.blocks[b];
       if (block.holdout || !block.stop) continue;
       fitting.add(b, *block.stop);
+      ways.add(b, *block.stop - Eigen::Vector2d(block.x, block.y));
       x.push_back(block.stop->x());
       y.push_back(block.stop->y());
     }
@@ -71,7 +72,12 @@ class Scorer {
       if (!block.stop) return;
       places.clear();
       fitting.of_others(b, broad, options_.folds);
-      if (climatology_) places = broad;
+      if (climatology_ && options_.ways_from_release) {
+        ways.of_others(b, places, options_.folds);
+        for (Eigen::Vector2d& place : places) place += Eigen::Vector2d(block.x, block.y);
+      } else if (climatology_) {
+        places = broad;
+      }
       for (std::uint32_t t = 0; !climatology_ && t < runs_[b].trials; ++t)
         if (!std::isnan(runs_[b].x[t])) places.emplace_back(runs_[b].x[t], runs_[b].y[t]);
       const bool unseen = too_few(places.size());

@@ -52,7 +52,11 @@ Json climatology_json(const ScoredRows& s) {
   return {{"score", json_of(s.climatology.total, six_decimals)},
           {"ci95", json_of(s.climatology_interval, six_decimals)},
           {"skill", json_of(s.skill.share, six_decimals)},
-          {"skill_ci95", json_of(s.skill.interval, six_decimals)}};
+          {"skill_ci95", json_of(s.skill.interval, six_decimals)},
+          {"ways_from_release",
+           {{"score", json_of(s.ways.total, six_decimals)},
+            {"skill", json_of(s.skill_over_ways.share, six_decimals)},
+            {"skill_ci95", json_of(s.skill_over_ways.interval, six_decimals)}}}};
 }
 
 Json tail_json(const ScoredRows& s) {
@@ -88,13 +92,28 @@ std::string skill_text(const Reduction& skill) {
          with_decimals(100.0 * skill.interval.high, 1) + " %)";
 }
 
+/// What a model must beat: the climatology with the smaller error.
+struct Rival {
+  double error;
+  Reduction skill;  // over it
+  std::string text;
+};
+Rival rival_of(const ScoredRows& s) {
+  if (s.ways.total < s.climatology.total)
+    return {s.ways.total, s.skill_over_ways,
+            with_decimals(s.ways.total, 3) + " of the other blocks' ways, begun at the release of each"};
+  return {s.climatology.total, s.skill,
+          "the climatology's " + with_decimals(s.climatology.total, 3) +
+              (s.deposits ? " (blocks anywhere on the mapped ground)" : "")};
+}
+
 /// Skill that a fit of so many numbers shows on its own rows although it has none on others: the price of a number in
 /// Akaike's criterion (`DiagnosisRules::price`), as if the groups were independent of each other.
 double skill_of_fit(const ScoredRows& s) {
   double shares = 0.0;
   for (const GroupScore& group : s.compared.groups) shares += 1.0 / group.rows;
   const auto groups = static_cast<double>(s.compared.groups.size());
-  return DiagnosisRules{}.price * s.fitted * shares / (groups * groups) / s.climatology.total;
+  return DiagnosisRules{}.price * s.fitted * shares / (groups * groups) / rival_of(s).error;
 }
 
 /// Number of blocks that were measured at rest, of which more than a quarter of the simulated trials leave the DEM. A
@@ -198,10 +217,14 @@ ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<c
   out.intervals = score_intervals(out.score, clusters);
   out.climatology = score_of_climatology(campaign, ask, how);
   out.climatology_interval = score_intervals(out.climatology, clusters).total;
+  ScoreOptions knowing_releases = how;
+  knowing_releases.ways_from_release = true;
+  out.ways = score_of_climatology(campaign, ask, knowing_releases);
   ScoreOptions without_own = how;
   without_own.own_value_too = false;
   out.compared = folds.empty() ? score(campaign, runs, ask, without_own) : out.score;  // out of fold no row has it
   out.skill = skill_of(out.compared, out.climatology, clusters);
+  out.skill_over_ways = skill_of(out.compared, out.ways, clusters);
   out.tail_begin = tail_begin(campaign);
   out.tail = tail_score(campaign, runs, ask, folds);
   out.tail_interval = score_intervals(out.tail, clusters).total;
@@ -233,8 +256,10 @@ BeforeAfter compared(const Campaign& campaign, ScoredRows before, ScoredRows aft
 ScoredRows in_large_groups(ScoredRows scored, std::span<const std::uint32_t> clusters) {
   scored.score = of_large_groups(scored.score);
   scored.climatology = of_large_groups(scored.climatology);
+  scored.ways = of_large_groups(scored.ways);
   scored.compared = of_large_groups(scored.compared);
   scored.skill = skill_of(scored.compared, scored.climatology, clusters);
+  scored.skill_over_ways = skill_of(scored.compared, scored.ways, clusters);
   return scored;
 }
 
@@ -243,14 +268,14 @@ std::string skill_sentence(const ScoredRows& s) {
     return rows_in_words(s.rows) + " rows: skill cannot be told: " + percent(unseen_share(s.score)) +
            " of the score is of rows that have too few simulated values and score as the climatology";
   if (std::isnan(s.skill.share)) return {};
-  const std::string errors = with_decimals(s.compared.total, 3) + " against the climatology's " +
-                             with_decimals(s.climatology.total, 3) +
-                             (s.deposits ? " (blocks anywhere on the mapped ground)" : "");
+  const Rival rival = rival_of(s);
+  const std::string errors = with_decimals(s.compared.total, 3) + " against " + rival.text;
   const std::string rows = rows_in_words(s.rows) + " rows: ";
-  if (!(s.skill.share > 0.0) && s.deposits) return rows + "no skill: " + errors;
-  if (!(s.skill.share > 0.0))
+  if (!(rival.skill.share > 0.0) && s.deposits) return rows + "no skill: " + errors;
+  if (!(rival.skill.share > 0.0))
     return rows + "no skill: " + errors + ": the measurements of the " + (s.rows == "fit" ? "other " : "") +
-           "fitting blocks, without any model, are " + (s.skill.interval.high < 0.0 ? "nearer" : "as near or nearer");
+           "fitting blocks, without any model, are " +
+           (rival.skill.interval.high < 0.0 ? "nearer" : "as near or nearer");
   const double of_fit = std::isnan(s.fitted) ? 0.0 : skill_of_fit(s);
   std::string of_numbers;
   if (std::isnan(s.fitted)) of_numbers = kWereFitted;
@@ -258,8 +283,8 @@ std::string skill_sentence(const ScoredRows& s) {
     of_numbers = "; fitting " + with_decimals(s.fitted, 1) + " free numbers to these " +
                  std::to_string(s.compared.rows.size()) + " rows gains some " + with_decimals(100.0 * of_fit, 1) +
                  " % on them without any skill";
-  return rows + skill_text(s.skill) + ": " + errors + of_numbers +
-         (s.skill.interval.low > of_fit ? "" : "; it may have no skill");
+  return rows + skill_text(rival.skill) + ": " + errors + of_numbers +
+         (rival.skill.interval.low > of_fit ? "" : "; it may have no skill");
 }
 
 std::string tail_against_climatology(const ScoredRows& s) {

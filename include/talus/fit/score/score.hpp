@@ -68,6 +68,9 @@ struct ScoreOptions {
   /// half do. Not so in score.py. Without it a fit would do well to send the blocks off the map: a row without
   /// simulated stops scores as the climatology. So rises the row of the place of a mapped block.
   bool leaving_costs = false;
+  /// The climatology knows where a block was released, as a model does: its places of rest are the ways of the others
+  /// from their releases, begun at its own.
+  bool ways_from_release = false;
 };
 
 /// How the rows are scored that a fit minimises, and that decide between fits.

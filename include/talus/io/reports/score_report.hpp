@@ -22,6 +22,8 @@ struct ScoredRows {
   Interval climatology_interval;
   Score compared;   ///< as `score`, but rows with too few simulated values score exactly as the climatology
   Reduction skill;  ///< by which the model, as `compared`, lowers the climatology's error
+  Score ways;       ///< of the climatology that knows the releases: ScoreOptions::ways_from_release
+  Reduction skill_over_ways;
   /// Numbers that were fitted to these rows, those that the prior holds counted as less than one (`effective_numbers`);
   /// NaN: some, not counted.
   double fitted = 0.0;

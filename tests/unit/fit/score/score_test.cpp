@@ -330,6 +330,23 @@ TEST_F(Scores, OfTheClimatologyOnHeldOutRows) {
   EXPECT_NEAR(group(s, "stop", 8), sum / 8.0 / std::hypot(spread(x), spread(y)), 1e-12);
 }
 
+/// Blocks that go the same way from releases 100 m apart: who knows the releases foretells each exactly. From one
+/// release the ways tell what the places do.
+TEST_F(Scores, OfTheClimatologyThatKnowsTheReleases) {
+  ScoreOptions ways;
+  ways.ways_from_release = true;
+  for (MeasuredBlock& b : campaign_.blocks) b.x = 20.0, b.y = -5.0;
+  EXPECT_NEAR(group(score_of_climatology(campaign_, holdout_rows(campaign_), ways), "stop", 8),
+              group(score_of_climatology(campaign_, holdout_rows(campaign_)), "stop", 8), 1e-12);
+  double x = 0.0;
+  for (MeasuredBlock& b : campaign_.blocks) {
+    b.x = x += 100.0;
+    b.stop = Eigen::Vector2d(b.x + 30.0, b.y + 40.0);
+  }
+  EXPECT_NEAR(group(score_of_climatology(campaign_, holdout_rows(campaign_), ways), "stop", 8), 0.0, 1e-12);
+  EXPECT_GT(group(score_of_climatology(campaign_, holdout_rows(campaign_)), "stop", 8), 0.1);
+}
+
 TEST_F(Scores, OfHeldOutBlocksDoNotDecideWhatIsFitted) {
   for (MeasuredBlock& b : campaign_.blocks) b.stop_mass = (b.holdout ? 0.3 : 0.97) * b.mass;
   for (const GroupScore& g : score(campaign_, runs_, fitting_rows(campaign_)).groups) EXPECT_NE(g.name, "mass");
