@@ -184,6 +184,19 @@ class Design(Case):
         self.refused("no block crosses screen 'fe/nce': this does not say that a barrier is not needed there: up to 54 % of the blocks",
                      "(unsafe)", arguments=["--screen", "fe/nce"])
 
+    def test_blocks_that_crossed_before_they_left_are_not_missing(self):
+        """Blocks 0 to 100 cross the road. A stops.csv, as of a profile, says which ones left."""
+        run = self.record()
+        for first, last, said in ((61, 600, "50 % of the blocks (500 of 1000) left the DEM"), (0, 100, None), (0, 110, None),
+                                  (0, 111, "1.1 % of the blocks (11 of 1000) left the DEM")):
+            with self.subTest(last=last):
+                left = range(first, last + 1)
+                self.write("out/run.json", json.dumps(run | {"ends": {"left": len(left)}}))
+                ends = [f"0,{block},{'left' if block in left else 'stopped'}\n" for block in range(1000)]
+                self.write("out/stops.csv", "source,block,end\n" + "".join(ends))
+                notes = [note for note in self.design()[1]["notes"] if "% of the blocks (" in note]
+                self.assertEqual([note.split(" without crossing this line first")[0] for note in notes], [said] if said else [])
+
     def test_a_line_where_blocks_do_not_get(self):
         """A part where the DEM has no height is not known to be safe."""
         run = self.record()

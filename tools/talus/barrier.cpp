@@ -4,6 +4,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "commands.hpp"
 #include "crossing_weights.hpp"
@@ -13,6 +14,7 @@
 #include "talus/io/files/file_name.hpp"
 #include "talus/io/files/staged_path.hpp"
 #include "talus/io/gdal/crossings_file.hpp"
+#include "talus/io/gdal/left_blocks.hpp"
 #include "talus/io/reports/barrier_report.hpp"
 #include "talus/io/results/run_folder.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -98,6 +100,17 @@ const talus::Screen& screen_of(const RunSummary& run, const BarrierOptions& o) {
                           talus::known_names(o.screen, screen_ids(run)));
 }
 
+/// How many blocks left the terrain and did not cross a screen; nothing where the run does not tell which ones left.
+std::optional<std::size_t> left_without_crossing(const RunSummary& run, const std::string& folder,
+                                                 const CrossingTable& crossings) {
+  if (run.pieces) return std::nullopt;  // a piece may have left alone
+  const auto left = talus::io::blocks_that_left(folder);
+  if (!left || static_cast<double>(left->size()) != run.left) return std::nullopt;
+  std::set<std::string> crossed;
+  for (std::size_t i = 0; i < crossings.count; ++i) crossed.insert(crossings.source[i] + ',' + crossings.block[i]);
+  return std::ranges::count_if(*left, [&](const std::string& block) { return !crossed.contains(block); });
+}
+
 /// Share of the screen where the DEM has no height.
 double without_height(const RunSummary& run, const BarrierOptions& o) {
   return run.without_height[static_cast<std::size_t>(&screen_of(run, o) - run.screens.data())];
@@ -111,7 +124,6 @@ CrossingTable simulated_crossings(const RunSummary& run, const BarrierOptions& o
                             ": the run kept no crossings (no screens.csv), must have had --screens, or [screens] file "
                             "in its scenario: add lines that blocks cross and run it again");
   const auto gap = talus::io::gap_note(without_height(run, o));  // also says if there is no such screen
-  const auto left = talus::io::left_note(run, 0);
   CrossingTable crossings = talus::io::read_crossings(file.string(), o.screen);
   const auto in_summary =
       talus::io::crossings_in_summary((fs::path(o.folder) / "screens_summary.csv").string(), o.screen);
@@ -119,6 +131,7 @@ CrossingTable simulated_crossings(const RunSummary& run, const BarrierOptions& o
     throw talus::InputError(file.string() + ": has " + std::to_string(crossings.rows) + " crossings of screen '" +
                             o.screen + "', screens_summary.csv beside it says " + std::to_string(*in_summary) +
                             ": must be as talus run has written it; copy it again, or run the scenario again");
+  const auto left = talus::io::left_note(run, left_without_crossing(run, o.folder, crossings), 0);
   if (crossings.count == 0)
     throw talus::InputError(
         file.string() + ": no block crosses screen '" + o.screen + "': " +
@@ -422,7 +435,9 @@ int design(BarrierOptions o) {
   for (std::string& note : talus::io::notes_of_run(o.folder, {weighting.given, weighting.scale.has_value(), true}))
     report.notes.push_back(std::move(note));
   report.without_height = without_height(run, o);
-  for (const auto& note : {talus::io::gap_note(report.without_height), talus::io::left_note(run, crossings.blocks)})
+  for (const auto& note :
+       {talus::io::gap_note(report.without_height),
+        talus::io::left_note(run, left_without_crossing(run, o.folder, crossings), crossings.blocks)})
     if (note) report.notes.push_back(*note);
   report.screen = o.screen;
   report.released = run.released;

@@ -170,12 +170,14 @@ RunSummary read_run(const std::filesystem::path& folder) {
   });
 }
 
-std::optional<std::string> left_note(const RunSummary& run, std::size_t crossed) {
+std::optional<std::string> left_note(const RunSummary& run, const std::optional<std::size_t>& before,
+                                     std::size_t crossed) {
   double lost = run.left;  // a block that crosses may have left before with a piece
   if (!run.pieces) lost = std::min(lost, run.released - static_cast<double>(crossed));
+  if (before) lost = static_cast<double>(*before);
   if (!(lost > kWarnedLeftShare * run.released)) return std::nullopt;
   const bool gaps = run.left_into_gaps > 0.0;
-  return "up to " + percent(lost / run.released) + " of the blocks (" + with_decimals(lost, 0) + " of " +
+  return (before ? "" : "up to ") + percent(lost / run.released) + " of the blocks (" + with_decimals(lost, 0) + " of " +
          with_decimals(run.released, 0) + ") left the " +
          (run.of_profile ? "profile"
           : gaps         ? "DEM or entered a gap in it"

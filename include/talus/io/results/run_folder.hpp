@@ -67,7 +67,9 @@ RunSummary read_run(const std::filesystem::path& folder);
 /// One line that many blocks may have left the terrain above a screen, so that its crossings are too few; nothing if
 /// they are few (`kWarnedLeftShare`).
 ///
+/// @param before   number of blocks that left and did not cross the screen; nothing: not known
 /// @param crossed  number of blocks that cross the screen
-std::optional<std::string> left_note(const RunSummary& run, std::size_t crossed);
+std::optional<std::string> left_note(const RunSummary& run, const std::optional<std::size_t>& before,
+                                     std::size_t crossed);
 
 }  // namespace talus::io
