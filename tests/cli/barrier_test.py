@@ -140,6 +140,17 @@ class Design(Case):
         self.assertEqual(note, f"one design for the whole line is too low: h_i ({whole} m) on 25.0-50.0 m, which need up to {highest} m."
                          f" Give each stretch its own design, or the whole line SEL {sel} kJ and h_i {highest} m")
 
+    def test_a_block_larger_than_those_that_give_the_speed_is_said(self):
+        """100 blocks of 3 t at 20 m/s, one of 30 t at 1 m/s: together 0.5 x 30 t x (20 m/s)^2 = 6000 kJ, which no block has."""
+        def notes(*arguments):
+            return [n for n in self.design(*arguments)[1]["notes"] if n.startswith("the largest block at the speed")]
+        self.assertEqual(notes(), [])
+        self.rows = [(0, i, "road", 20.0, 1.0, 3000.0, 10.0) for i in range(100)] + [(0, 100, "road", 1.0, 1.0, 30000.0, 10.0)]
+        self.save()
+        (note,) = notes()
+        self.assertIn("has 6000 kJ, more than any crossing of the run (600 kJ)", note)
+        self.assertEqual(notes("--volume", "2"), [])
+
     def test_crossings_up_to_an_end_of_the_line_are_said(self):
         """The line is 100 m, a cell 5 m: crossings within a cell of an end go on beyond it."""
         for first, last, ends in ((10.0, 30.0, None), (4.0, 60.0, "the beginning"), (40.0, 96.0, "the end"), (1.0, 99.0, "both ends"),

@@ -75,6 +75,17 @@ class Tutorials(unittest.TestCase):
         self.assertIn(",0.000104493,", rows["ground-lower-talus-3d energy"])
         self.assertIn(",0.00031348,", rows["size-2.0 energy"])
 
+    def test_mapped_deposits(self):
+        """The example at the end of the page, with its error before and after."""
+        (example,) = [block for _, block in blocks_of("mapped-deposits.md") if "mapped_deposits_study.py make" in block]
+        with tempfile.TemporaryDirectory() as folder:
+            script = example.replace("/tmp/mapped", os.path.join(folder, "mapped")).replace("talus calibrate", f"'{TALUS}' calibrate")
+            done = subprocess.run(["bash", "-euo", "pipefail", "-c", script], cwd=ROOT, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("error, fitting rows (40 blocks): 0.975 before, 0.592 after", done.stdout)
+        with open(os.path.join(ROOT, "docs", "mapped-deposits.md"), encoding="utf-8") as file:
+            self.assertIn("falls from 0.975 to 0.592", file.read())
+
     def test_read_maps(self):
         self.run_page("read-maps.md")
 

@@ -387,6 +387,20 @@ std::optional<std::string> volume_note(double volume, double largest) {
          " m3: is it in m3? The speeds and heights are those of the blocks of the run";
 }
 
+/// A line where the design block with the percentile of the speed, before all factors, has more energy than any block
+/// that crosses: where sizes differ much, the many give the speed and the largest one the mass.
+std::optional<std::string> energy_note(const BarrierReport& report, std::span<const talus::LineCrossing> crossings) {
+  const double speed = report.design.speed_percentile;
+  const double energy = 0.5 * report.block.volume * report.block.density * speed * speed;
+  double largest = 0.0;
+  for (const talus::LineCrossing& c : crossings) largest = std::max(largest, c.energy());
+  if (!(energy > largest)) return std::nullopt;
+  return "the largest block at the speed of the percentile has " + talus::with_digits(1e-3 * energy, 4) +
+         " kJ, more than any crossing of the run (" + talus::with_digits(1e-3 * largest, 4) +
+         " kJ): mostly smaller blocks give the speed. Where the block of the design is known, give it by --volume; the "
+         "largest crossings of each stretch are in the table";
+}
+
 /// @param all  crossings, also later ones of a block
 void add_design(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
                 std::span<const talus::LineCrossing> all, const RunSummary& run, const BarrierOptions& o) {
@@ -400,6 +414,8 @@ void add_design(BarrierReport& report, std::span<const talus::LineCrossing> cros
             volume_note(*o.volume, talus::DesignBlockRule{{}, rule.density, rule.rock_density}.of(crossings).volume))
       report.notes.push_back(*note);
   report.design = talus::design_barrier(crossings, report.block, report.factors);
+  if (!o.volume)
+    if (const auto note = energy_note(report, crossings)) report.notes.push_back(*note);
   report.longest = o.stretch.value_or(kLongestStretch);
   if (!run.of_profile) add_stretches(report, all, crossings.size(), rule, run, o);
 }
