@@ -1,4 +1,5 @@
 """talus profile: the 2D model, by hand, against the plane of docs/validation.md, and its files and faults."""
+import base64
 import json
 import math
 import os
@@ -472,6 +473,16 @@ class Products(Profile):
         rows = re.findall(r"<tr[^>]*><td class='k'>\S+ (\w+)</td><td>(.*?)</td><td class='b'>(.*?)</td><td>(.*?)</td></tr>", page)
         self.assertGreater(len(rows), 8)
         return rows, page
+
+    def test_the_report_shows_the_drawing_and_the_run_out(self):
+        self.profile("--trajectories", "100", out="profile")
+        _, page = self.page("profile")
+        self.assertNotIn("The folder has no maps", page)
+        (drawing,) = re.findall(r'src="data:image/svg\+xml;base64,([^"]+)"', page)
+        self.assertEqual(base64.b64decode(drawing).decode(), self.read_text("profile/profile.svg"))
+        beyond = [(float(r["distance_to"]), float(r["share_beyond"])) for r in self.read_table("profile/runout.csv")]
+        tenth = next((to for to, share in beyond if share <= 0.1), None)
+        self.assertIn("<td class='n'>10 %</td><td class='n'>" + ("" if tenth is None else f"{tenth:.4g}</td>"), page)
 
     def test_flags_that_notes_name_are_of_the_command_that_made_the_folder(self):
         line = f"LINESTRING ({WEST + 20} {NORTH - 180}, {WEST + 280} {NORTH - 180})"

@@ -11,6 +11,7 @@
 #include "report_facts.hpp"
 #include "report_map_page.hpp"
 #include "report_objects.hpp"
+#include "report_profile.hpp"
 #include "run_page_script.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
@@ -31,6 +32,7 @@ struct RunReport {
   RunFacts run;
   std::optional<HazardFacts> hazard;
   MapSheet sheet;
+  std::optional<ProfilePart> profile;  // of a run on one
   ScreensPart screens;
   std::vector<BarrierPart> barriers;
   ObjectsPart objects;
@@ -45,6 +47,7 @@ RunReport read_report(const fs::path& folder) {
   report.run = read_facts(folder);
   report.hazard = read_hazard_facts(folder, report.run);
   report.sheet = read_sheet(folder, report.run);
+  if (report.run.of_profile) report.profile = read_profile_part(folder);
   report.screens = read_screens_part(folder);
   report.barriers = read_barrier_parts(folder, report.hazard);
   report.objects = read_objects_part(folder);
@@ -81,18 +84,20 @@ Markup run_html(const RunReport& report, const std::string& attribution) {
   const RunFacts& run = report.run;
   const RecordedGrid& grid = run.grid;
   const std::string blocks =
-      grouped(run.released) + " blocks from " + grouped(run.source_cells) + " source cells, " +
-      grouped(run.per_source) + " each" +
+      grouped(run.released) + " blocks" +
+      (run.of_profile ? std::string()
+                      : " from " + grouped(run.source_cells) + " source cells, " + grouped(run.per_source) + " each") +
       (run.rounds > 0.0 ? ", in " + grouped(run.rounds) + (run.rounds == 1.0 ? " round" : " rounds") : std::string());
   return "<h2>What was run</h2>\n<table>\n"_html + line("program", "talus " + run.version) +
          line("command", run.command) + line("hazard", report.hazard ? report.hazard->command : "") +
          line("run.json written on", run.written) + line("status", run.status) + line("released", blocks) +
          line("how they ended", ends_text(run)) +
-         line("paths", grouped(run.kilometres) + " km, " + grouped(run.impacts) + " impacts, " +
-                           grouped(run.touched_cells) + " cells touched") +
+         line("paths", grouped(run.kilometres) + " km, " + grouped(run.impacts) + " impacts" +
+                           (run.of_profile ? "" : ", " + grouped(run.touched_cells) + " cells touched")) +
          line("energy line of those that stopped", energy_line_text(run)) +
-         line("terrain", grouped(grid.columns) + " x " + grouped(grid.rows) + " cells of " +
-                             with_digits(grid.cell_x, 6) + " x " + with_digits(grid.cell_y, 6) + " m") +
+         line("terrain", run.of_profile ? grouped(grid.columns) + " steps of " + with_digits(grid.cell_x, 6) + " m"
+                                        : grouped(grid.columns) + " x " + grouped(grid.rows) + " cells of " +
+                                              with_digits(grid.cell_x, 6) + " x " + with_digits(grid.cell_y, 6) + " m") +
          line("coordinate system", grid.crs) + line("attribution", attribution) + line("plan", run.plan) +
          "</table>\n" + warnings_html(report);
 }
@@ -201,7 +206,8 @@ std::string run_page(const RunPageRequest& request) {
       "report", request.title.empty() ? "Rock fall: " + name : request.title,
       "page of " + today() + ", run.json written on " + report.run.written + ", plan " + report.run.plan,
       report.sheet.maps.empty() ? Markup() : run_page_script()};
-  const Markup body = run_html(report, attribution) + maps_html(report, imprint) + standing_html(report.run) +
+  const Markup places = report.profile ? profile_html(*report.profile) : maps_html(report, imprint);
+  const Markup body = run_html(report, attribution) + places + standing_html(report.run) +
                       screens_html(report.screens) + barriers_html(report.barriers) +
                       objects_html(report.objects, report.run.pieces > 0.0,
                                    report.hazard ? report.hazard->class_names : std::vector<std::string>()) +
