@@ -21,6 +21,7 @@ constexpr std::size_t kPlots = 6;
 
 std::string reduction_text(const Reduction& r) {
   if (std::isnan(r.share)) return "-";
+  if (r.share == 0.0 && r.interval.low == 0.0 && r.interval.high == 0.0) return "nothing: fitted to no effect";
   return with_decimals(100.0 * r.share, 1) + " % (" + with_decimals(100.0 * r.interval.low, 1) + " to " +
          with_decimals(100.0 * r.interval.high, 1) + ")";
 }
@@ -189,6 +190,35 @@ Markup candidates_table(const DiagnosisRound& round, const std::vector<HoldoutEr
   return html + "</table>\n";
 }
 
+/// The numbers of the ground, where they began and where they are.
+Markup ground_html(const Diagnosis& d) {
+  const std::vector<Parameter>& free = d.base.free;
+  if (free.empty()) return {};
+  const bool more = d.rounds.size() > 1, with_range = d.base.spread.rows() == d.base.z.size();
+  Markup html =
+      "<h2>The ground that was fitted</h2>\n<p>"_html + std::to_string(free.size()) + " numbers, by " +
+      std::to_string(std::ranges::count(d.base.runs, false, [](const BlockRuns& r) { return r.trials == 0; })) +
+      " blocks. Start: the middle of the prior, which also holds a number that the blocks say little of. The error "
+      "hardly changes within the range: it is no confidence interval (talus calibrate gives these).</p>\n<table><tr><th>"
+      "number</th><th>start</th><th>ground alone</th><th>range</th>" +
+      (more ? "<th>with what was found</th>"_html : ""_html) + "</tr>\n";
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const Parameter& p = free[i];
+    const auto k = static_cast<Eigen::Index>(i);
+    const auto at = [&](double z) { return with_digits(p.value(std::clamp(z, p.z(p.lower), p.z(p.upper))), 3); };
+    html += "<tr><td class='b'>"_html + p.key + "</td><td>" + with_digits(p.centre, 3) + unit_text(p) + "</td><td>" +
+            at(d.base.z[k]) + "</td><td>";
+    if (with_range) {
+      const double reach = std::sqrt(d.base.spread(k, k));
+      html += at(d.base.z[k] - reach) + " to " + at(d.base.z[k] + reach);
+    }
+    html += "</td>";
+    if (more) html += "<td>"_html + with_digits(p.get(d.with_effects.model), 3) + "</td>";
+    html += "</tr>\n";
+  }
+  return html + "</table>\n";
+}
+
 /// The tests of the families, with what each found.
 Markup families_table(const DiagnosisRound& round) {
   Markup html =
@@ -298,8 +328,7 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
   }
   if (const std::string undecided = undecided_text(d.stability); !undecided.empty())
     html += "<p><b>The first round is "_html + undecided + "</b>: independent base fits differ.</p>\n";
-  html += errors_html(record) + repeated_html(record);
-  html += spread_html(record);
+  html += errors_html(record) + repeated_html(record) + ground_html(d) + spread_html(record);
   html +=
       "<h2>Families</h2>\n<p>Effects that leave the same kind of trace are tested together, by one test of few degrees "
       "of freedom. Only an effect of a significant family may be named. How often p is 5 % or less in campaigns "
@@ -310,7 +339,8 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
             settling_text(d.rounds[i].settling);
   html +=
       "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where it may be named, else "
-      "with the ground held. The objective is the error with groups of n rows that count n / (n + 10).</p>\n";
+      "with the ground held. The objective is the error with groups of n rows that count n / (n + 10). The p of the "
+      "score test orders the candidates; the p of the family decides.</p>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
     if (!d.rounds[i].candidates.empty())
       html += "<h3>Round "_html + std::to_string(i + 1) + (i > 0 ? ", with what was found before in the model" : "") +

@@ -63,7 +63,8 @@ Markup missing(const DiagnosisRecord& record) {
 
 /// Whether other fits of the ground come to the same first verdict.
 Markup repeated(const Stability& stability) {
-  if (stability.fits.size() < 2) return {};
+  if (stability.fits.size() < 2)
+    return " One fit of the ground was made: --base-fits 5 shows whether others come to the same."_html;
   const Interval p = p_range_of(stability);
   const std::string undecided = undecided_text(stability), places = places_text(stability);
   return " "_html + std::to_string(stability.fits.size()) + " independent fits of the ground: " +
@@ -124,6 +125,11 @@ Markup gained(const DiagnosisRecord& record) {
             " to " + percent_in_tenths(e.reduction.interval.high) + ")" +
             (e.reduction.interval.low <= 0.0 ? ": there may be no gain" : "");
   text += ".";
+  if (const NatsGained& nats = record.errors[record.unseen].nats;
+      record.diagnosis.rounds.size() > 1 && !std::isnan(nats.per_block))
+    text += " By the log score, in which all groups count, a block is foretold better by "_html +
+            with_decimals(nats.per_block, 2) + " nats (95 %: " + with_decimals(nats.interval.low, 2) + " to " +
+            with_decimals(nats.interval.high, 2) + ").";
   if (!std::isnan(rows.climatology.total))
     text += " The climatology has "_html + with_decimals(rows.climatology.total, 3) + ". " + skill_sentence(rows) + ".";
   return text;
