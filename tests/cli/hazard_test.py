@@ -130,6 +130,14 @@ class Hazard(OneThread, KeptRuns, Case):
         self.refused("is damaged", "hazard", self.path("out"), "--overwrite")
         self.assertTrue(os.path.exists(self.path("out/intensity_T50.tif")), "what was there stays")
 
+    def test_the_tally_of_another_run_is_refused(self):  # its maps came under the name of this run
+        self.simulated()
+        self.simulate("other", "--seed", "2")
+        shutil.copy(self.path("other/hazard_tally.gz"), self.path("out"))
+        for arguments in (["hazard", self.path("out")], ["hazard", self.path("out"), "--objects", self.path("sources.gpkg")]):
+            self.refused("hazard_tally.gz: is of another run than run.json beside it", *arguments)
+        self.assertFalse(os.path.exists(self.path("out/annual_frequency.tif")))
+
     def test_all_events_of_a_source_that_the_dem_cuts_fall_on_the_rest(self):
         """A rectangle of 40 m of which the western 20 m lie off the DEM: check, run, hazard and report say so, with the numbers."""
         cut = [(box(-20, 230, 40, 10), ["cut", 0.8]), (box(200, 230, 20, 10), ["whole", 0.3])]

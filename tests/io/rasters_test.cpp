@@ -84,6 +84,21 @@ TEST_F(Terrains, ZerosAmongMountainsAreSuspect) {
                    "1 cells have the height 0 and all others less than -200 m"));
 }
 
+TEST_F(Terrains, HeightsFarFromAllOthersAreSuspect) {
+  std::vector<double> values(80, 700.0);
+  values[5] = 500.5;  // a step of 199.5 m may be a cliff
+  EXPECT_TRUE(read_terrain(RasterFile{.values = values}.write(path("cliff.tif"))).warnings.empty());
+  values[5] = values[6] = -99.0;
+  EXPECT_TRUE(said(read_terrain(RasterFile{.values = values}.write(path("low.tif"))).warnings,
+                   "2 cells have the height -99 m, and all others are more than 700 m"));
+  values[5] = 0.0, values[6] = -0.0001;
+  EXPECT_TRUE(said(read_terrain(RasterFile{.values = values}.write(path("two.tif"))).warnings,
+                   "2 cells have heights of -0.0001 to 0 m, and all others are more than 700 m"));
+  values[5] = values[6] = 700.0, values[79] = 8888.0;
+  EXPECT_TRUE(said(read_terrain(RasterFile{.values = values}.write(path("high.tif"))).warnings,
+                   "1 cell has the height 8888 m, and all others are less than 700 m"));
+}
+
 TEST_F(Terrains, OnlyMissingValuesAreRefused) {
   const std::string dem = RasterFile{.values = std::vector<double>(80, -1.0), .nodata = -1.0}.write(path("dem.tif"));
   expect_input_error([&] { read_terrain(dem); }, {"dem.tif", "all cells are missing"});

@@ -72,6 +72,7 @@ Weighting weigh_crossings(std::vector<talus::LineCrossing>& crossings, const Cro
                               " has no annual frequencies that could be replaced; give the sources a field frequency, "
                               "or the scenario [frequency], and run again");
     const auto header = talus::io::read_hazard_header(*file);
+    talus::io::require_plan_of_tally(o.folder, header.plan);
     auto loaded = talus::io::recorded_plan(o.folder, header.plan);
     talus::io::GivenFrequencies given;
     if (!o.frequency.empty()) given = talus::io::apply_weighting(o.frequency, loaded.scenario);

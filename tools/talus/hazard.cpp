@@ -71,6 +71,7 @@ std::unique_ptr<talus::HazardSurvey> survey_of(const fs::path& file, int threads
   record.header = talus::io::read_hazard(
       file,
       [&](const talus::io::HazardHeader& h) {
+        talus::io::require_plan_of_tally(file.parent_path(), h.plan);
         if (record.width > 0.0) check_width(h, record.matrix);
         survey = std::make_unique<talus::HazardSurvey>(
             h.grid, h.rules, record.matrix, talus::ObjectWidth{record.width, h.passages_below}, record.curves);
@@ -230,6 +231,7 @@ int hazard(const HazardOptions& options) {
   std::optional<talus::io::ObjectLayer> layer;    // its faults are found before the maps are made
   if (!options.frequency.empty() || !options.objects.empty()) {
     record.header = talus::io::read_hazard_header(file);
+    talus::io::require_plan_of_tally(folder, record.header.plan);
     plan = recorded_plan(options, record);
   }
   if (!options.objects.empty()) layer.emplace(options.objects, *plan, object_fields(options));

@@ -1,10 +1,12 @@
 #include "heights.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <limits>
 #include <mutex>
+#include <utility>
 
 #include "dataset.hpp"
 #include "pixels.hpp"
@@ -17,6 +19,7 @@ namespace {
 
 constexpr double kLowest = -500.0, kHighest = 9000.0;  // heights on the earth, with room to spare [m]
 constexpr double kFarFromZero = 50.0;                  // cells of height 0 are suspect where all others are farther [m]
+constexpr double kFarApart = 200.0;  // heights between which the terrain has none are suspect: no cliff is so upright [m]
 constexpr int kMostReaders = 4;                        // pieces at once, of 18 MB each
 
 /// Reads pieces of the file.
@@ -78,14 +81,62 @@ class HeightReader {
                         : ""));
 }
 
+/// Heights in steps of 10 m: what lies far from all others is found. The same in any order of the cells.
+class HeightSteps {
+ public:
+  void add(double height) {
+    Step& step = steps_[static_cast<std::size_t>((height - kLowest) / kStep)];
+    step.cells += 1;
+    step.low = std::min(step.low, height), step.high = std::max(step.high, height);
+  }
+  void add(const HeightSteps& other) {
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      steps_[i].cells += other.steps_[i].cells;
+      steps_[i].low = std::min(steps_[i].low, other.steps_[i].low);
+      steps_[i].high = std::max(steps_[i].high, other.steps_[i].high);
+    }
+  }
+
+  /// Some cells of like heights.
+  struct Group {
+    std::uint64_t cells = 0;
+    double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();  // [m]
+
+    void add(const Group& other) {
+      cells += other.cells;
+      low = std::min(low, other.low), high = std::max(high, other.high);
+    }
+  };
+  /// The cells below the widest range without heights, and those above it.
+  std::pair<Group, Group> parted() const {
+    Group below, all;
+    double widest = 0.0;
+    for (const Step& step : steps_) {
+      if (step.cells > 0 && all.cells > 0 && step.low - all.high > widest) widest = step.low - all.high, below = all;
+      if (step.cells > 0) all.add(step);
+    }
+    Group above;
+    for (const Step& step : steps_)
+      if (step.cells > 0 && step.low > below.high) above.add(step);
+    return {below, above};
+  }
+
+ private:
+  using Step = Group;
+  static constexpr double kStep = 10.0;
+  std::array<Step, static_cast<std::size_t>((kHighest - kLowest) / kStep) + 1> steps_{};
+};
+
 /// Counts of heights: the same in any order of the pieces.
 struct Counts {
   std::uint64_t known = 0, zeros = 0;
   double lowest_other = std::numeric_limits<double>::infinity(),  // of those that are not 0 [m]
       highest_other = -std::numeric_limits<double>::infinity();
+  HeightSteps steps;
 
   void add(double height) {
     ++known;
+    steps.add(height);
     if (height == 0.0)
       ++zeros;
     else
@@ -96,8 +147,25 @@ struct Counts {
     zeros += other.zeros;
     lowest_other = std::min(lowest_other, other.lowest_other);
     highest_other = std::max(highest_other, other.highest_other);
+    steps.add(other.steps);
   }
 };
+
+/// Cells whose heights are far from all others, as those of missing values that nobody declared; empty if none are.
+std::string outliers_text(const std::string& path, const HeightSteps& steps) {
+  const auto [below, above] = steps.parted();
+  if (below.cells == 0 || !(above.low - below.high >= kFarApart)) return {};
+  const bool low = below.cells <= above.cells;
+  const HeightSteps::Group& few = low ? below : above;
+  const bool one = few.low == few.high;
+  const std::string heights = one ? "the height " + text_of(few.low)
+                                  : "heights of " + with_digits(few.low, 4) + " to " + with_digits(few.high, 4);
+  return path + ": " + std::to_string(few.cells) + (few.cells == 1 ? " cell has " : " cells have ") + heights +
+         " m, and all others are " +
+         (low ? "more than " + text_of(std::floor(above.low)) : "less than " + text_of(std::ceil(below.high))) +
+         " m: are they missing values, or a fault of the file? Missing values must be declared" +
+         (one ? ": " + edit_command(path, "-a_nodata " + text_of(few.low)) : "");
+}
 
 /// Reads one piece. Throws InputError if it cannot be read or holds what is no height.
 void read_piece(HeightReader& reader, const std::string& path, const RasterPart& part, Raster<float>& heights,
@@ -195,6 +263,8 @@ void read_heights(const std::string& path, Terrain& terrain, int threads) {
                                       : "less than " + text_of(std::ceil(found.highest_other))) +
                                " m: if 0 stands for missing values, declare it with " +
                                edit_command(path, "-a_nodata 0"));
+  else if (std::string text = outliers_text(path, found.steps); !text.empty())
+    terrain.warnings.push_back(std::move(text));
 }
 
 }  // namespace talus::io

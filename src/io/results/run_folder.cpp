@@ -10,6 +10,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/vectors.hpp"
+#include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
@@ -168,6 +169,19 @@ RunSummary read_run(const std::filesystem::path& folder) {
       run.without_height.push_back(screen.value("share_without_height", 0.0));
     return run;
   });
+}
+
+void require_plan_of_tally(const std::filesystem::path& folder, const std::string& plan) {
+  const std::filesystem::path file = folder / "run.json";
+  const std::string text = read_file(file.string(), file.string(), "a record of talus run", kMostRecord);
+  const std::string recorded = understood(file, kRunAgain, [&] {
+    const Json json = parsed_record(text);
+    const std::string of_round = json.value("plan", "");
+    return json.contains("rounds") ? json.at("rounds").value("plan", of_round) : of_round;
+  });
+  if (!recorded.empty() && recorded != plan)
+    throw InputError((folder / kHazardFile).string() +
+                     ": is of another run than run.json beside it; copy both from one folder, or run again");
 }
 
 std::optional<std::string> left_note(const RunSummary& run, const std::optional<std::size_t>& before,

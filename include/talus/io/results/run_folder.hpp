@@ -64,6 +64,11 @@ struct RunSummary {
 /// Reads OUT/run.json. Throws InputError if it cannot be read or `talus run` has not written it.
 RunSummary read_run(const std::filesystem::path& folder);
 
+/// Throws InputError if OUT/run.json cannot be read, or is of another plan than hazard_tally.gz beside it.
+///
+/// @param plan  of hazard_tally.gz
+void require_plan_of_tally(const std::filesystem::path& folder, const std::string& plan);
+
 /// One line that many blocks may have left the terrain above a screen, so that its crossings are too few; nothing if
 /// they are few (`kWarnedLeftShare`).
 ///

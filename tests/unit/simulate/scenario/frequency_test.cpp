@@ -140,6 +140,8 @@ TEST(AnnualWeights, PowerLawOverClasses) {
   EXPECT_NEAR(static_cast<double>(large) * unit, c * 0.25 / (blocks * 0.25), 1e-12);
   s.blocks.classes[1].diameter = {1.5, 4.0};
   refused(s, "classes of blocks that overlap");
+  s.blocks.classes[1].diameter = {3.0, 4.0};  // of 2 to 3 m: c (1/2 - 1/3) = 0.0414
+  refused(s, "a gap between classes of blocks, from 2 to 3 m, must lie side by side: 0.0414 events per year");
   s.blocks.classes[1].diameter = {3.0, 3.0};
   refused(s, "blocks of one diameter");
 }
