@@ -132,6 +132,12 @@ Checkpoint Checkpoint::opened(const fs::path& folder, const LoadedScenario& load
   return checkpoint;
 }
 
+void Checkpoint::require_part(const Part& asked, const std::string& out) const {
+  if (part_.number == asked.number && part_.of == asked.of) return;
+  throw InputError(out + ": what is kept there is part " + std::to_string(part_.number) + "/" +
+                   std::to_string(part_.of) + "; give that with --part, or another folder");
+}
+
 std::vector<Setting> Checkpoint::settings(std::uint32_t rounds) const {
   std::vector<Setting> settings = settings_;
   for (Setting& setting : settings)

@@ -141,8 +141,8 @@ std::optional<Outcome> RunSession::find_done() const {
   }
   if (!fs::exists(fs::path(request_.out) / kCheckpointManifest)) return {};
   const auto checkpoint = Checkpoint::opened(request_.out, plan_.loaded, false);
-  const bool same = checkpoint.part().number == plan_.part.number && checkpoint.part().of == plan_.part.of;
-  if (!same || checkpoint.asked() != plan_.rounds) return {};
+  checkpoint.require_part(plan_.part, request_.out);
+  if (checkpoint.asked() != plan_.rounds) return {};
   if (!checkpoint.between_rounds() || checkpoint.rounds() != plan_.rounds.count) return {};
   return Outcome::Done;
 }

@@ -68,9 +68,7 @@ Checkpoint Tracing::resumed(const fs::path& work) const {
                      "--most-rounds (" +
                      std::to_string(checkpoint.rounds()) +
                      " rounds are done); give the same, or begin anew (--overwrite)");
-  if (checkpoint.part().number != plan_.part.number || checkpoint.part().of != plan_.part.of)
-    throw InputError(request_.out + ": what is kept there is part " + std::to_string(checkpoint.part().number) + "/" +
-                     std::to_string(checkpoint.part().of) + "; give that with --part, or another folder");
+  checkpoint.require_part(plan_.part, request_.out);
   return checkpoint;
 }
 

@@ -332,7 +332,7 @@ class Tables(InputCase):
                          sources=self.table(good + f'{X},"{cell}",1\n'))
         for cell in ("", " "):
             said = self.run_well("check", *self.flags(self.table(good + f"{cell},{Y},1\n"))).stdout
-            self.assertIn("features without geometry, which release nothing: FID 2", said)
+            self.assertIn("features without geometry (or with one that cannot be read), which release nothing: FID 2", said)
         self.run_well("check", *self.flags(self.table(f'wkt,x,y\n"POINT ({X} {Y})",west,a\n')))  # x and y are fields
         ring = ", ".join(f"{X + dx} {Y + dy}" for dx, dy in ((0, 0), (20, 0), (20, 20), (0, 20), (0, 0)))
         for columns in ("x,y,WKT", "x,y,geom"):  # also where they are numbers: one point was read instead of 16 cells
@@ -432,6 +432,26 @@ class Shapefiles(InputCase):
         with open(self.path("c.DBF"), "wb") as file:
             file.write(whole)
         self.run_well("check", *self.flags("c.shp"))
+
+    def test_files_that_are_cut_off(self):  # what was left of them was read as all
+        write_shapefile(self.path("c.shp"), [2.5, 2.5, 3.5])
+        for name, options in (("c.mif", {"format": "MapInfo File"}), ("c.geojsonl", {"format": "GeoJSONSeq"})):
+            gdal.VectorTranslate(self.path(name), self.path("c.shp"), **options)
+            self.run_well("check", *self.flags(name))
+        gdal.Translate(self.path("d.img"), self.path("dem.tif"), format="ENVI")
+        self.run_well("check", "--dem", self.path("d.img"), "--sources", self.path("c.shp"))
+        for name, said in (("c.shp", "is cut off, must have "), ("c.mif", ""),
+                           ("c.geojsonl", "cannot be read as a whole: "), ("d.img", "is cut off, must have ")):
+            with open(self.path(name), "rb") as file:
+                whole = file.read()
+            with open(self.path(name), "wb") as file:
+                file.write(whole[:len(whole) * 9 // 10])
+            dem, sources = ("d.img", "c.gpkg") if name == "d.img" else ("dem.tif", name)
+            self.fails(2, f"{name}: {said}", arguments=["check", "--dem", self.path(dem), "--sources", self.path(sources), "--diameter", "1"])
+            if name == "c.shp":
+                with open(self.path(name), "wb") as file:
+                    file.write(whole)
+                gdal.VectorTranslate(self.path("c.gpkg"), self.path("c.shp"))
 
     def test_fields_that_are_not_in_an_archive(self):  # they were lost in silence
         write_shapefile(self.path("c.shp"), [2.5, 2.5, 3.5])

@@ -147,6 +147,8 @@ class Parts(KeptRuns, RunCase):
         self.assertIn("part 1/2 is done", done.stderr)
         self.fails(2, "another plan", "(seed 9 instead of ",
                    arguments=["run", self.path("s.toml"), "-o", one, "--part", "1/2", "--resume", "--seed", "9"])
+        self.fails(2, "part1: what is kept there is part 1/2; give that with --part",
+                   arguments=["run", self.path("s.toml"), "-o", one, "--part", "2/2", "--resume"])
         self.fails(2, "1 of 2 parts are given, part 2 is the first", arguments=["merge", self.path("m"), one])
         self.fails(2, "give each part once", arguments=["merge", self.path("m"), one, one])
         self.fails(2, "is no part of a run", arguments=["merge", self.path("m"), self.folder, one])

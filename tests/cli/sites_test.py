@@ -63,6 +63,7 @@ class Calibrate(Sites):
         done = self.run_well("calibrate", b, a, "-o", self.path("both"), *SHORT[:-1], *self.FIT, "--share", "theta_scale",
                              timeout=1200)
         self.assertIn("two campaigns have the same name (slope, slope): all are called by their folders", done.stderr)
+        self.assertIn("has the same measurements as", done.stderr)
         both = self.read_json("both/calibration.json")
         self.assertEqual([p["sites"] for p in both["parameters"]], [["a", "b"]])
         shared = both["parameters"][0]

@@ -55,6 +55,22 @@ std::vector<std::string> site_names(const std::vector<std::string>& paths,
   return folders;
 }
 
+/// Warns where two campaigns have equal tables.
+void warn_of_copies(const std::vector<std::string>& paths, const std::vector<talus::io::LoadedCampaign>& loaded,
+                    std::vector<std::string>& warnings) {
+  const auto tables_of = [](const talus::io::LoadedCampaign& campaign) {
+    std::vector<std::string> sums;
+    for (const talus::io::InputFile& input : campaign.inputs)
+      if (input.path.ends_with(".csv")) sums.push_back(input.role + input.sha256);
+    return sums;
+  };
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (const auto tables = tables_of(loaded[i]); !tables.empty() && tables == tables_of(loaded[k]))
+        warnings.push_back(paths[i] + ": has the same measurements as " + paths[k] +
+                           " (equal tables): they count twice, and intervals are too narrow (unsafe); leave one out");
+}
+
 /// Sorts by the names of the sites, so that the order of the command line changes nothing.
 template <class T>
 void reorder(std::vector<T>& list, const std::vector<std::size_t>& order) {
@@ -69,6 +85,7 @@ OpenedSites::OpenedSites(const CampaignCommand& command, talus::io::FitRecord& r
     : paths(command.campaigns), loaded(read_campaigns(command)), folder(command.out, command.overwrite) {
   for (std::size_t i = 0; i < paths.size(); ++i) require_measurements(paths[i], loaded[i].campaign);
   std::vector<std::string> names = site_names(paths, loaded, record.warnings);
+  warn_of_copies(paths, loaded, record.warnings);
   for (std::size_t i = 0; i < paths.size(); ++i) check_folder(names[i], paths[i]);
   std::vector<std::size_t> order(paths.size());
   std::iota(order.begin(), order.end(), 0U);

@@ -43,6 +43,10 @@ class Checkpoint {
   ~Checkpoint();
 
   const Part& part() const { return part_; }
+  /// Throws InputError if it is another part than the one that is asked for.
+  ///
+  /// @param out  the folder as the user named it
+  void require_part(const Part& asked, const std::string& out) const;
   const Rounds& asked() const { return asked_; }
   std::uint32_t rounds() const { return rounds_; }  ///< rounds done
   /// Gives a plan, for its record, the settings (with `trajectories` multiplied by `rounds`), the notes and warnings

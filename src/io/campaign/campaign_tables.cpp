@@ -197,7 +197,15 @@ class Tables {
       sample.distance = (place - Eigen::Vector2d(block.x, block.y)).norm();
       sample.speed = table.number(row, "speed_ms", kSpeed).value_or(kNotGiven);
       sample.spin = table.number(row, "angular_velocity_rads", kSpin).value_or(kNotGiven);
-      block.samples.push_back(sample);
+      const auto same = [&sample](const Sample& s) {
+        const auto equal = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+        return s.x == sample.x && s.y == sample.y && equal(s.speed, sample.speed) && equal(s.spin, sample.spin);
+      };
+      if (std::ranges::any_of(block.samples, same))
+        warnings_.push_back(files_.samples + ":" + std::to_string(row.line) + ": block '" + block.id +
+                            "' has this sample already: the first one counts");
+      else
+        block.samples.push_back(sample);
     });
   }
 

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "complete_file.hpp"
 #include "input_name.hpp"
 #include "local_gdal.hpp"
 #include "talus/base/error.hpp"
@@ -145,6 +146,7 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
                      raster_hint(file, kinds) + "; docs/security.md has the formats that are read");
   }
   if ((kinds & GDAL_OF_RASTER) != 0) refuse_named_overviews(*dataset, path);
+  check_complete(*dataset, path, name_for_gdal(file), messages);
   return dataset;
 }
 

@@ -164,7 +164,7 @@ std::string outliers_text(const std::string& path, const HeightSteps& steps) {
          " m, and all others are " +
          (low ? "more than " + text_of(std::floor(above.low)) : "less than " + text_of(std::ceil(below.high))) +
          " m: are they missing values, or a fault of the file? Missing values must be declared" +
-         (one ? ": " + edit_command(path, "-a_nodata " + text_of(few.low)) : "");
+         (one ? ": " + edit_command(path, "-a_nodata " + text_of(HeightReader(path).stored(few.low))) : "");
 }
 
 /// Reads one piece. Throws InputError if it cannot be read or holds what is no height.

@@ -140,20 +140,23 @@ class LineReader {
   std::size_t features_ = 0;
 };
 
-/// A warning of the screens that lie, wholly or partly, where the terrain has no height.
-/// @param on_map  ids of the screens that are not wholly off the DEM: of those the reader has warned
-void warn_of_gaps(ScreenLayer& layer, const std::string& path, const Terrain& terrain,
-                  const std::set<std::string>& on_map) {
+/// A warning of the screens or barriers that lie, wholly or partly, where the terrain has no height.
+/// @param kind    "screen"
+/// @param effect  what comes of it
+/// @param on_map  ids of those that are not wholly off the DEM: of the others the reader has warned
+template <class Line>
+void warn_of_gaps(std::span<const Line> lines, const std::string& kind, const std::string& effect,
+                  const std::string& path, const Terrain& terrain, const std::set<std::string>& on_map,
+                  std::vector<std::string>& warnings) {
   std::vector<std::string> lacks;
-  for (const Screen& screen : layer.screens) {
-    const double share = share_without_height(screen, terrain.heights);
-    if (share >= kNoticedWithoutHeight && on_map.contains(screen.id))
-      lacks.push_back(percent(share, 2) + " of screen " + screen.id);
+  for (const Line& line : lines) {
+    const double share = share_without_height({line.id, line.lines}, terrain.heights);
+    if (share >= kNoticedWithoutHeight && on_map.contains(line.id))
+      lacks.push_back(percent(share, 2) + " of " + kind + " " + line.id);
   }
   if (!lacks.empty())
-    layer.warnings.push_back(path + ": where the DEM has no height (off it, in its outer half cell or in a gap) lie " +
-                             listed(lacks) +
-                             ": blocks do not get there, so that the crossings are lower bounds (unsafe)");
+    warnings.push_back(path + ": where the DEM has no height (off it, in its outer half cell or in a gap) lie " +
+                       listed(lacks) + ": blocks do not get there, so that " + effect);
 }
 
 constexpr double kApart = 0.01;  // lines lie on each other within this [m]: places are rounded to millimetres
@@ -238,7 +241,8 @@ ScreenLayer read_screens(const std::string& path, const Terrain& terrain) {
     if (reader.read(*feature, screen->lines)) on_map.insert(id);
   });
   reader.finish(out);
-  warn_of_gaps(out, path, terrain, on_map);
+  warn_of_gaps<Screen>(out.screens, "screen", "the crossings are lower bounds (unsafe)", path, terrain, on_map,
+                       out.warnings);
   warn_of_doubled_lines(out, path);
   return out;
 }
@@ -247,15 +251,17 @@ BarrierLayer read_barriers(const std::string& path, const Terrain& terrain) {
   LineReader reader("barriers", path, terrain,
                     "lines with the fields height (m) and capacity (kJ; inf: any energy, as a dam)");
   BarrierLayer out;
+  std::set<std::string> on_map;
   const int height = reader.layer().field("height"), capacity = reader.layer().field("capacity");
   for_each_feature(reader.layer(), [&](const Feature& feature) {
     Barrier& barrier = out.barriers.emplace_back();
     barrier.id = reader.id_of(*feature);
     barrier.height = reader.number(*feature, height, "barriers.height").value_or(0.0);
     barrier.capacity = 1e3 * reader.number(*feature, capacity, "barriers.capacity").value_or(0.0);
-    reader.read(*feature, barrier.lines);
+    if (reader.read(*feature, barrier.lines)) on_map.insert(barrier.id);
   });
   reader.finish(out);
+  warn_of_gaps<Barrier>(out.barriers, "barrier", "nothing is caught there", path, terrain, on_map, out.warnings);
   return out;
 }
 

@@ -87,6 +87,17 @@ std::optional<std::string> part_of(const std::string& path, const char* small, c
   return std::nullopt;
 }
 
+/// Throws InputError if a .shp is shorter than its header says: its size in words of two bytes, the highest byte first.
+void check_size_of_shapes(const std::string& shp) {
+  std::array<unsigned char, 28> head{};
+  const File file = opened(shp);
+  if (!file || VSIFReadL(head.data(), 1, head.size(), file.get()) != head.size()) return;  // GDAL says why
+  std::uint64_t words = 0;
+  for (std::size_t i = 24; i < 28; ++i) words = words << 8 | head[i];
+  if (*size_of(shp) < 2 * words)
+    throw InputError(shp + ": is cut off, must have " + std::to_string(2 * words) + " bytes: copy it again");
+}
+
 /// The number of records in a .dbf. Throws InputError if the file is shorter than its header says.
 std::uint64_t records_of(const std::string& dbf) {
   std::array<unsigned char, 12> head{};
@@ -108,6 +119,7 @@ void check_shapefile(const std::string& path) {
   const auto dbf = part_of(path, ".dbf", ".DBF"), shx = part_of(path, ".shx", ".SHX");
   const std::string stem = path.substr(0, path.size() - 4), name = std::filesystem::path(stem).filename().string();
   if (!size_of(path)) return;  // GDAL says why
+  check_size_of_shapes(path);
   if (!dbf)
     throw InputError(path + ": the fields of its features are in " + name +
                      ".dbf, which is not there: copy all parts of a Shapefile (.shp, .shx, .dbf, .prj); if it is to "

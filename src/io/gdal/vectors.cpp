@@ -365,7 +365,7 @@ class Placer {
       throw InputError(path + ": the DEM has no heights in any of its " + std::to_string(without_terrain_) +
                        " cells, must have in one at least");
     if (out_.cells.empty()) throw InputError(off_dem_text(path, box_, layer, terrain));
-    for (const auto& [lost, what] : {std::pair{&without_geometry_, "without geometry"},
+    for (const auto& [lost, what] : {std::pair{&without_geometry_, "without geometry (or with one that cannot be read)"},
                                      {&off_map_, "wholly off the DEM"},
                                      {&without_height_, "where the DEM has no heights"}})
       if (!lost->names.empty())
