@@ -290,7 +290,8 @@ def report(table):
     for kind in kinds + ["all without an effect"] * (len(kinds) > 1):
         of = [r for r in none if kind not in kinds or r["effect"] == kind]
         alarms = sum(r["found"] not in ("none", "unexplained") for r in of)
-        print(f"\n{kind}: false alarms: {alarms} of {len(of)}, unexplained: {sum(r['found'] == 'unexplained' for r in of)}")
+        print(f"\n{kind}: false alarms: {alarms} of {len(of)}, unexplained: {sum(r['found'] == 'unexplained' for r in of)}, "
+              f"smallest corrected p at most 0.05: {sum(r['p'] <= 0.05 for r in of)}")
         if "again found" in of[0]:
             print(f"  again from that ground: false alarms: {sum(r['again found'] not in ('none', 'unexplained') for r in of)}")
         for name in [name for name in of[0] if name.removeprefix("again ") in FAMILIES]:
