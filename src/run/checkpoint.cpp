@@ -63,8 +63,8 @@ std::string manifest_text(const Json& manifest) {
   return manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// " (seed 2 instead of 1, another content of the file of dem)": what differs between two records of a plan. Empty where
-/// no record tells it.
+/// " (seed 2 instead of 1, another content of the file of dem)": what differs between two records of a plan. Empty
+/// where no record tells it.
 std::string differences(const std::vector<Setting>& before, const std::vector<Setting>& now,
                         const std::vector<io::InputFile>& files_before, const std::vector<io::InputFile>& files_now) {
   std::vector<std::string> words;
@@ -342,7 +342,8 @@ void Checkpoint::read_manifest() {
     throw InputError(file.string() +
                      ": belongs to another plan: the scenario, a flag or a file is not what it was when this was "
                      "traced" +
-                     differences(settings_, loaded_->settings, inputs_, loaded_->inputs) + ". To go on (--resume) give the same again, with the same seed and trajectories, or begin "
+                     differences(settings_, loaded_->settings, inputs_, loaded_->inputs) +
+                     ". To go on (--resume) give the same again, with the same seed and trajectories, or begin "
                      "anew (--overwrite); to merge give parts of the plan of the first one");
 }
 

@@ -307,7 +307,8 @@ TEST_F(Sources, AllOffTheMapGivesBothExtents) {
 TEST_F(Sources, EmptyLayersAreRefused) {
   expect_input_error([&] { read({}); }, {"s.gpkg", "no features"});
   expect_input_error([&] { read({{""}, {"POLYGON EMPTY"}}); }, {"s.gpkg", "none of its features has a geometry"});
-  EXPECT_TRUE(said(read({{""}, {"POINT(5 5)"}}).warnings, "features without geometry (or with one that cannot be read), which release nothing: FID 1"));
+  EXPECT_TRUE(said(read({{""}, {"POINT(5 5)"}}).warnings,
+                   "features without geometry (or with one that cannot be read), which release nothing: FID 1"));
 }
 
 TEST_F(Sources, OtherLayersAreNamed) {

@@ -11,8 +11,8 @@ namespace {
 
 void check_envi(GDALDataset& dataset, const std::string& path, const std::string& file) {
   const char* const offset = dataset.GetMetadataItem("header_offset", "ENVI");
-  const auto bytes = static_cast<std::uint64_t>(
-      GDALGetDataTypeSizeBytes(dataset.GetRasterBand(1)->GetRasterDataType()));
+  const auto bytes =
+      static_cast<std::uint64_t>(GDALGetDataTypeSizeBytes(dataset.GetRasterBand(1)->GetRasterDataType()));
   const std::uint64_t size = (offset == nullptr ? 0 : std::strtoull(offset, nullptr, 10)) +
                              bytes * static_cast<std::uint64_t>(dataset.GetRasterXSize()) *
                                  static_cast<std::uint64_t>(dataset.GetRasterYSize()) *

@@ -19,8 +19,9 @@ namespace {
 
 constexpr double kLowest = -500.0, kHighest = 9000.0;  // heights on the earth, with room to spare [m]
 constexpr double kFarFromZero = 50.0;                  // cells of height 0 are suspect where all others are farther [m]
-constexpr double kFarApart = 200.0;  // heights between which the terrain has none are suspect: no cliff is so upright [m]
-constexpr int kMostReaders = 4;                        // pieces at once, of 18 MB each
+constexpr double kFarApart =
+    200.0;                       // heights between which the terrain has none are suspect: no cliff is so upright [m]
+constexpr int kMostReaders = 4;  // pieces at once, of 18 MB each
 
 /// Reads pieces of the file.
 class HeightReader {

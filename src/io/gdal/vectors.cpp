@@ -107,9 +107,7 @@ class AttributeReader {
     return settings;
   }
 
-  std::string read_note() const {
-    return fields_note(path_, columns_, features_, layer_.field_names());
-  }
+  std::string read_note() const { return fields_note(path_, columns_, features_, layer_.field_names()); }
 
   /// A line for each field that looks as if it were meant.
   std::vector<std::string> unread_notes() const {
@@ -365,9 +363,10 @@ class Placer {
       throw InputError(path + ": the DEM has no heights in any of its " + std::to_string(without_terrain_) +
                        " cells, must have in one at least");
     if (out_.cells.empty()) throw InputError(off_dem_text(path, box_, layer, terrain));
-    for (const auto& [lost, what] : {std::pair{&without_geometry_, "without geometry (or with one that cannot be read)"},
-                                     {&off_map_, "wholly off the DEM"},
-                                     {&without_height_, "where the DEM has no heights"}})
+    for (const auto& [lost, what] :
+         {std::pair{&without_geometry_, "without geometry (or with one that cannot be read)"},
+          {&off_map_, "wholly off the DEM"},
+          {&without_height_, "where the DEM has no heights"}})
       if (!lost->names.empty())
         out_.warnings.push_back(path + ": features " + what + ", which " + kReleaseNothing + ": " + lost_text(*lost));
     if (!lacks_.empty()) out_.warnings.push_back(path + ": " + lacks_text(lacks_));

@@ -199,7 +199,8 @@ Markup ground_html(const Diagnosis& d) {
       "<h2>The ground that was fitted</h2>\n<p>"_html + std::to_string(free.size()) + " numbers, by " +
       std::to_string(std::ranges::count(d.base.runs, false, [](const BlockRuns& r) { return r.trials == 0; })) +
       " blocks. Start: the middle of the prior, which also holds a number that the blocks say little of. The error "
-      "hardly changes within the range: it is no confidence interval (talus calibrate gives these).</p>\n<table><tr><th>"
+      "hardly changes within the range: it is no confidence interval (talus calibrate gives "
+      "these).</p>\n<table><tr><th>"
       "number</th><th>start</th><th>ground alone</th><th>range</th>" +
       (more ? "<th>with what was found</th>"_html : ""_html) + "</tr>\n";
   for (std::size_t i = 0; i < free.size(); ++i) {

@@ -374,14 +374,15 @@ Markup assumptions_html(const CheckedRun& checked) {
     html += forest + "; the maps hold only while it stands.";
     html += "</li>\n<li>";
   }
-  html += checked.hazard
-              ? "Frequencies, return periods and classes follow from " + frequency_text(checked.hazard->frequency) +
-                    ": " + with_digits(checked.hazard->events_per_year, 4) +
-                    " events per year together. Impact probabilities, energies, speeds, jump heights and the figures of "
-                    "screens are not weighted by them: there each simulated block counts as much as any other, a rare "
-                    "large one as much as a frequent small one."
-              : "Probabilities are given that one block falls, each source cell as likely as any other. They "
-                "are not per year.";
+  html +=
+      checked.hazard
+          ? "Frequencies, return periods and classes follow from " + frequency_text(checked.hazard->frequency) + ": " +
+                with_digits(checked.hazard->events_per_year, 4) +
+                " events per year together. Impact probabilities, energies, speeds, jump heights and the figures of "
+                "screens are not weighted by them: there each simulated block counts as much as any other, a rare "
+                "large one as much as a frequent small one."
+          : "Probabilities are given that one block falls, each source cell as likely as any other. They "
+            "are not per year.";
   html +=
       "</li>\n<li>Crossing a cell is meant in plan, at any height: a block that flies over a road has crossed "
       "it.</li>\n"

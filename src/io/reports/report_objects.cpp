@@ -197,7 +197,8 @@ Markup objects_html(const ObjectsPart& part, bool pieces, const std::vector<std:
       "event\": no block of this run did it; it may happen all the same, as often as the upper bound. Energies are the "
       "largest within the outline (safe for what does not stop a block: a yard, a road); at the first touch, for a "
       "wall, they are in objects.csv (entry), at a barrier in its table. The class is that of the object by these "
-      "frequencies, the map \"Hazard class\" has that of each cell: a long object is hit more often than any place of it, "
+      "frequencies, the map \"Hazard class\" has that of each cell: a long object is hit more often than any place of "
+      "it, "
       "and its class may be higher than that of every cell; cut a road into sections of one length to compare "
       "them.</p>\n"_html;
   if (pieces) html += "<p>Blocks broke, and "_html + kHitsOfPieces + ".</p>\n";

@@ -95,9 +95,10 @@ Markup run_html(const RunReport& report, const std::string& attribution) {
          line("paths", grouped(run.kilometres) + " km, " + grouped(run.impacts) + " impacts" +
                            (run.of_profile ? "" : ", " + grouped(run.touched_cells) + " cells touched")) +
          line("energy line of those that stopped", energy_line_text(run)) +
-         line("terrain", run.of_profile ? grouped(grid.columns) + " steps of " + with_digits(grid.cell_x, 6) + " m"
-                                        : grouped(grid.columns) + " x " + grouped(grid.rows) + " cells of " +
-                                              with_digits(grid.cell_x, 6) + " x " + with_digits(grid.cell_y, 6) + " m") +
+         line("terrain", run.of_profile
+                             ? grouped(grid.columns) + " steps of " + with_digits(grid.cell_x, 6) + " m"
+                             : grouped(grid.columns) + " x " + grouped(grid.rows) + " cells of " +
+                                   with_digits(grid.cell_x, 6) + " x " + with_digits(grid.cell_y, 6) + " m") +
          line("coordinate system", grid.crs) + line("attribution", attribution) + line("plan", run.plan) +
          "</table>\n" + warnings_html(report);
 }

@@ -191,8 +191,8 @@ std::optional<std::string> left_note(const RunSummary& run, const std::optional<
   if (before) lost = static_cast<double>(*before);
   if (!(lost > kWarnedLeftShare * run.released)) return std::nullopt;
   const bool gaps = run.left_into_gaps > 0.0;
-  return (before ? "" : "up to ") + percent(lost / run.released) + " of the blocks (" + with_decimals(lost, 0) + " of " +
-         with_decimals(run.released, 0) + ") left the " +
+  return (before ? "" : "up to ") + percent(lost / run.released) + " of the blocks (" + with_decimals(lost, 0) +
+         " of " + with_decimals(run.released, 0) + ") left the " +
          (run.of_profile ? "profile"
           : gaps         ? "DEM or entered a gap in it"
                          : "DEM") +

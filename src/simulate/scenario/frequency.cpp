@@ -121,8 +121,8 @@ std::vector<double> law_frequencies(const Scenario& s) {
     if (volumes[i].low < volumes[i - 1].high * (1.0 - 1e-12))
       refuse("power_law with classes of blocks that overlap, must lie side by side");
     if (volumes[i].low > volumes[i - 1].high * kNoGap)
-      refuse("power_law with a gap between classes of blocks, from " + readable(diameter_of(volumes[i - 1].high)) + " to " +
-             readable(diameter_of(volumes[i].low)) + " m, must lie side by side: " +
+      refuse("power_law with a gap between classes of blocks, from " + readable(diameter_of(volumes[i - 1].high)) +
+             " to " + readable(diameter_of(volumes[i].low)) + " m, must lie side by side: " +
              with_digits(frequency_between(rules, volumes[i - 1].high, volumes[i].low), 3) +
              " events per year of these sizes would be lost");
   }
