@@ -72,8 +72,11 @@ std::string differences(const std::vector<Setting>& before, const std::vector<Se
     const auto found = std::ranges::find(settings, key, &Setting::key);
     return found == settings.end() ? std::string("none") : found->value;
   };
+  const auto without_folder = [](const std::string& value) {  // machines may have the same files in other folders
+    return fs::path(value).is_absolute() ? fs::path(value).filename().string() : value;
+  };
   for (const Setting& s : now)
-    if (const std::string was = value_in(before, s.key); was != s.value)
+    if (const std::string was = value_in(before, s.key); without_folder(was) != without_folder(s.value))
       words.push_back(s.key + " " + s.value + " instead of " + was);
   for (const Setting& s : before)
     if (std::ranges::find(now, s.key, &Setting::key) == now.end())
@@ -82,8 +85,12 @@ std::string differences(const std::vector<Setting>& before, const std::vector<Se
     if (file.role == "scenario" || file.role == "include") continue;  // their settings are above
     const auto was = std::ranges::find(files_before, file.role, &io::InputFile::role);
     if (was == files_before.end() || was->sha256 != file.sha256)
-      words.push_back("another content of the file of " + file.role);
+      words.push_back((file.sha256 == file.content ? "" : "perhaps ") +  // a GeoPackage changes when a program opens it
+                      ("another content of the file of " + file.role));
   }
+  for (const io::InputFile& file : files_before)
+    if (std::ranges::find(files_now, file.role, &io::InputFile::role) == files_now.end())
+      words.push_back("no file of " + file.role);
   return words.empty() ? "" : " (" + listed(words) + ")";
 }
 
@@ -325,7 +332,7 @@ void Checkpoint::read_manifest() {
     rest_sha256_ = json.at("rest_sha256");
     for (const Json& s : json.at("settings")) settings_.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});
     for (const Json& input : json.at("inputs"))
-      inputs_.push_back({input.at("role"), input.at("path"), input.at("sha256")});
+      inputs_.push_back({input.at("role"), input.at("path"), input.at("sha256"), {}});
     notes_ = json.at("notes").get<std::vector<std::string>>();
     warnings_ = json.at("warnings").get<std::vector<std::string>>();
     for (const Json& rows : json.at("rows"))

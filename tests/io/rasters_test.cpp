@@ -90,13 +90,13 @@ TEST_F(Terrains, HeightsFarFromAllOthersAreSuspect) {
   EXPECT_TRUE(read_terrain(RasterFile{.values = values}.write(path("cliff.tif"))).warnings.empty());
   values[5] = values[6] = -99.0;
   EXPECT_TRUE(said(read_terrain(RasterFile{.values = values}.write(path("low.tif"))).warnings,
-                   "2 cells have the height -99 m, and all others are more than 700 m"));
+                   "2 cells have the height -99 m, and all others are at 700 m or higher"));
   values[5] = 0.0, values[6] = -0.0001;
   EXPECT_TRUE(said(read_terrain(RasterFile{.values = values}.write(path("two.tif"))).warnings,
-                   "2 cells have heights of -0.0001 to 0 m, and all others are more than 700 m"));
+                   "2 cells have heights of -0.0001 to 0 m, and all others are at 700 m or higher"));
   values[5] = values[6] = 700.0, values[79] = 8888.0;
   EXPECT_TRUE(said(read_terrain(RasterFile{.values = values}.write(path("high.tif"))).warnings,
-                   "1 cell has the height 8888 m, and all others are less than 700 m"));
+                   "1 cell has the height 8888 m, and all others are at 700 m or lower"));
 }
 
 TEST_F(Terrains, OnlyMissingValuesAreRefused) {

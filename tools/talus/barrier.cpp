@@ -17,6 +17,7 @@
 #include "talus/io/gdal/left_blocks.hpp"
 #include "talus/io/reports/barrier_report.hpp"
 #include "talus/io/results/run_folder.hpp"
+#include "talus/io/results/run_record.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/simulate/screens/screens.hpp"
 
@@ -103,7 +104,8 @@ const talus::Screen& screen_of(const RunSummary& run, const BarrierOptions& o) {
 /// How many blocks left the terrain and did not cross a screen; nothing where the run does not tell which ones left.
 std::optional<std::size_t> left_without_crossing(const RunSummary& run, const std::string& folder,
                                                  const CrossingTable& crossings) {
-  if (run.pieces) return std::nullopt;  // a piece may have left alone
+  if (run.pieces) return std::nullopt;                                                // a piece may have left alone
+  if (!(run.left > talus::io::kWarnedLeftShare * run.released)) return std::nullopt;  // too few for a note
   const auto left = talus::io::blocks_that_left(folder);
   if (!left || static_cast<double>(left->size()) != run.left) return std::nullopt;
   std::set<std::string> crossed;
@@ -131,13 +133,14 @@ CrossingTable simulated_crossings(const RunSummary& run, const BarrierOptions& o
     throw talus::InputError(file.string() + ": has " + std::to_string(crossings.rows) + " crossings of screen '" +
                             o.screen + "', screens_summary.csv beside it says " + std::to_string(*in_summary) +
                             ": must be as talus run has written it; copy it again, or run the scenario again");
-  const auto left = talus::io::left_note(run, left_without_crossing(run, o.folder, crossings), 0);
-  if (crossings.count == 0)
+  if (crossings.count == 0) {
+    const auto left = talus::io::left_note(run, left_without_crossing(run, o.folder, crossings), 0);
     throw talus::InputError(
         file.string() + ": no block crosses screen '" + o.screen + "': " +
         (gap || left ? "this does not say that a barrier is not needed there: " + (gap ? *gap : *left)
                      : "a barrier is not needed there, or the line lies uphill of the sources, or barriers "
                        "of the run catch the blocks before it, or the run has too few trajectories to say"));
+  }
   for (const std::size_t told : {crossings.speed.size(), crossings.energy.size(), crossings.height.size(),
                                  crossings.mass.size(), crossings.places.size()})
     if (told != crossings.count)
@@ -397,8 +400,9 @@ std::optional<std::string> energy_note(const BarrierReport& report, std::span<co
   if (!(energy > largest)) return std::nullopt;
   return "the largest block at the speed of the percentile has " + talus::with_digits(1e-3 * energy, 4) +
          " kJ, more than any crossing of the run (" + talus::with_digits(1e-3 * largest, 4) +
-         " kJ): mostly smaller blocks give the speed. Where the block of the design is known, give it by --volume; the "
-         "largest crossings of each stretch are in the table";
+         " kJ): the largest block and the speed are not of one fall. Where the block of the design is known, give it "
+         "by "
+         "--volume";
 }
 
 /// @param all  crossings, also later ones of a block
@@ -415,7 +419,7 @@ void add_design(BarrierReport& report, std::span<const talus::LineCrossing> cros
       report.notes.push_back(*note);
   report.design = talus::design_barrier(crossings, report.block, report.factors);
   if (!o.volume)
-    if (const auto note = energy_note(report, crossings)) report.notes.push_back(*note);
+    if (const auto note = energy_note(report, all)) report.notes.push_back(*note);
   report.longest = o.stretch.value_or(kLongestStretch);
   if (!run.of_profile) add_stretches(report, all, crossings.size(), rule, run, o);
 }

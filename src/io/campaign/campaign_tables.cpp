@@ -187,6 +187,7 @@ class Tables {
 
   void read_samples() {
     const CsvTable table(files_.samples, {"id", "x", "y", "z", "speed_ms", "angular_velocity_rads"}, {"id", "x", "y"});
+    std::vector<std::string> again;  // lines of samples that are there already
     table.for_each_row([&](const Row& row) {
       MeasuredBlock& block = block_of_row(table, row);
       const Eigen::Vector2d place = place_on_map(table, row);
@@ -202,11 +203,13 @@ class Tables {
         return s.x == sample.x && s.y == sample.y && equal(s.speed, sample.speed) && equal(s.spin, sample.spin);
       };
       if (std::ranges::any_of(block.samples, same))
-        warnings_.push_back(files_.samples + ":" + std::to_string(row.line) + ": block '" + block.id +
-                            "' has this sample already: the first one counts");
+        again.push_back(std::to_string(row.line));
       else
         block.samples.push_back(sample);
     });
+    if (!again.empty())
+      warnings_.push_back(files_.samples + ": samples that are there already, of which the first one counts: lines " +
+                          listed(again));
   }
 
   /// Puts the blocks in the order of their ids and their samples in that of the distance, so that the order of rows in

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <span>
+#include <vector>
 
-#include "regular_file.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
@@ -18,25 +19,36 @@ void check_envi(GDALDataset& dataset, const std::string& path, const std::string
                                  static_cast<std::uint64_t>(dataset.GetRasterYSize()) *
                                  static_cast<std::uint64_t>(dataset.GetRasterCount());
   VSIStatBufL status;
-  if (VSIStatL(file.c_str(), &status) != 0 || dataset.GetMetadataItem("file_compression", "ENVI") != nullptr) return;
+  const char* const packed = dataset.GetMetadataItem("file_compression", "ENVI");
+  if (VSIStatL(file.c_str(), &status) != 0 || (packed != nullptr && std::atoi(packed) != 0)) return;
   if (static_cast<std::uint64_t>(status.st_size) < size)
     throw InputError(path + ": is cut off, must have " + std::to_string(size) + " bytes: copy it again");
 }
 
-void check_mapinfo(GDALDataset& dataset, const std::string& path, const std::string& file) {
-  if (!file.ends_with(".mif") && !file.ends_with(".MIF")) return;
-  const std::string stem = file.substr(0, file.size() - 3);
-  std::string rows = read_start(stem + "mid", kMostTable);
-  if (rows.empty()) rows = read_start(stem + "MID", kMostTable);
+/// The lines of a file that hold more than blanks; 0 if there is none.
+std::int64_t filled_lines(const std::string& file) {
+  VSILFILE* const in = VSIFOpenL(file.c_str(), "rb");
+  if (in == nullptr) return 0;
+  std::vector<char> piece(std::size_t{1} << 20U);
   std::int64_t count = 0;
-  for (std::size_t at = 0; at < rows.size();) {
-    const std::size_t end = std::min(rows.find('\n', at), rows.size());
-    if (rows.find_first_not_of(" \r\n", at) < end) ++count;
-    at = end + 1;
-  }
-  const std::int64_t shapes = dataset.GetLayerCount() == 0 ? 0 : dataset.GetLayer(0)->GetFeatureCount();
-  if (count > shapes)
-    throw InputError(path + ": has " + std::to_string(shapes) + " shapes, and its .mid has " + std::to_string(count) +
+  bool filled = false;
+  while (const std::size_t read = VSIFReadL(piece.data(), 1, piece.size(), in))
+    for (const char c : std::span(piece).first(read))
+      if (c == '\n')
+        count += filled ? 1 : 0, filled = false;
+      else
+        filled = filled || (c != ' ' && c != '\r');
+  VSIFCloseL(in);
+  return count + (filled ? 1 : 0);
+}
+
+void check_mapinfo(GDALDataset& dataset, const std::string& path, const std::string& file) {
+  if (!EQUAL(CPLGetExtension(file.c_str()), "mif") || dataset.GetLayerCount() == 0) return;
+  const std::string stem = file.substr(0, file.size() - 3);
+  const std::int64_t rows = std::max(filled_lines(stem + "mid"), filled_lines(stem + "MID"));
+  const std::int64_t shapes = dataset.GetLayer(0)->GetFeatureCount();
+  if (rows > shapes)
+    throw InputError(path + ": has " + std::to_string(shapes) + " shapes, and its .mid has " + std::to_string(rows) +
                      " rows, must be as many: copy both files again");
 }
 

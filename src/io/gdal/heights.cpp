@@ -20,7 +20,7 @@ namespace {
 constexpr double kLowest = -500.0, kHighest = 9000.0;  // heights on the earth, with room to spare [m]
 constexpr double kFarFromZero = 50.0;                  // cells of height 0 are suspect where all others are farther [m]
 constexpr double kFarApart =
-    200.0;                       // heights between which the terrain has none are suspect: no cliff is so upright [m]
+    200.0;  // heights between which the terrain has none are suspect: hardly a cliff is so upright [m]
 constexpr int kMostReaders = 4;  // pieces at once, of 18 MB each
 
 /// Reads pieces of the file.
@@ -163,8 +163,9 @@ std::string outliers_text(const std::string& path, const HeightSteps& steps) {
                                   : "heights of " + with_digits(few.low, 4) + " to " + with_digits(few.high, 4);
   return path + ": " + std::to_string(few.cells) + (few.cells == 1 ? " cell has " : " cells have ") + heights +
          " m, and all others are " +
-         (low ? "more than " + text_of(std::floor(above.low)) : "less than " + text_of(std::ceil(below.high))) +
-         " m: are they missing values, or a fault of the file? Missing values must be declared" +
+         (low ? "at " + text_of(std::floor(above.low)) + " m or higher"
+              : "at " + text_of(std::ceil(below.high)) + " m or lower") +
+         ": are they missing values, or a fault of the file? Missing values must be declared" +
          (one ? ": " + edit_command(path, "-a_nodata " + text_of(HeightReader(path).stored(few.low))) : "");
 }
 

@@ -8,11 +8,15 @@ namespace {
 
 std::vector<std::string> rows_of_exits(const std::string& file) {
   const Dataset dataset = open_dataset(file, GDAL_OF_VECTOR);
-  OGRLayer* const layer = dataset->GetLayer(0);
+  OGRLayer* const layer = dataset->GetLayerCount() > 0 ? dataset->GetLayer(0) : nullptr;
   std::vector<std::string> blocks;
+  if (layer == nullptr) return blocks;
+  const int source = layer->GetLayerDefn()->GetFieldIndex("source"),
+            block = layer->GetLayerDefn()->GetFieldIndex("block");
+  if (source < 0 || block < 0) return blocks;
   while (const Feature feature{layer->GetNextFeature()})
-    blocks.push_back(std::to_string(feature->GetFieldAsInteger64("source")) + ',' +
-                     std::to_string(feature->GetFieldAsInteger64("block")));
+    blocks.push_back(std::to_string(feature->GetFieldAsInteger64(source)) + ',' +
+                     std::to_string(feature->GetFieldAsInteger64(block)));
   return blocks;
 }
 

@@ -268,8 +268,11 @@ BarrierLayer read_barriers(const std::string& path, const Terrain& terrain) {
 void warn_of_barriers_off(const std::string& where, std::span<const Barrier> barriers, const Terrain& terrain,
                           std::vector<std::string>& warnings) {
   LinesOff off(terrain);
-  for (const Barrier& barrier : barriers) off.add(barrier.id, barrier.lines);
+  std::set<std::string> on_map;
+  for (const Barrier& barrier : barriers)
+    if (!off.add(barrier.id, barrier.lines)) on_map.insert(barrier.id);
   off.warn(where, "barriers", "", warnings);
+  warn_of_gaps<Barrier>(barriers, "barrier", "nothing is caught there", where, terrain, on_map, warnings);
 }
 
 }  // namespace talus::io

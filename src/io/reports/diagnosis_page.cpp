@@ -21,7 +21,7 @@ constexpr std::size_t kPlots = 6;
 
 std::string reduction_text(const Reduction& r) {
   if (std::isnan(r.share)) return "-";
-  if (r.share == 0.0 && r.interval.low == 0.0 && r.interval.high == 0.0) return "nothing: fitted to no effect";
+  if (r.share == 0.0 && r.interval.low == 0.0 && r.interval.high == 0.0) return "0: it was fitted to no effect";
   return with_decimals(100.0 * r.share, 1) + " % (" + with_decimals(100.0 * r.interval.low, 1) + " to " +
          with_decimals(100.0 * r.interval.high, 1) + ")";
 }
@@ -133,7 +133,9 @@ Markup errors_html(const DiagnosisRecord& record) {
   html +=
       "<p>Mean normalised score. 0: the model gives the measured value exactly; about 0.56: it knows only the spread "
       "of the measurements. Climatology: the measurements of the fitting blocks (of a fitting block those of the "
-      "others) in the place of a model.</p>\n";
+      "others) in the place of a model. Where blocks were released at several places, the sentences below also "
+      "compare with the climatology by release: the ways of the fitting blocks from their releases, begun at the "
+      "release of each block.</p>\n";
   for (const BeforeAfter& e : record.errors)
     for (const std::string& sentence : {skill_sentence(e.after), tail_before_after(e), leaving_sentence(e.after)})
       if (!sentence.empty()) html += "<p>"_html + sentence + "</p>\n";

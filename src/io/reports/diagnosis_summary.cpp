@@ -127,9 +127,11 @@ Markup gained(const DiagnosisRecord& record) {
   text += ".";
   if (const NatsGained& nats = record.errors[record.unseen].nats;
       record.diagnosis.rounds.size() > 1 && !std::isnan(nats.per_block))
-    text += " By the log score, in which all groups count, a block is foretold better by "_html +
-            with_decimals(nats.per_block, 2) + " nats (95 %: " + with_decimals(nats.interval.low, 2) + " to " +
-            with_decimals(nats.interval.high, 2) + ").";
+    text += " By the log score, over all groups, the measurements of a block are "_html +
+            with_digits(std::exp(nats.per_block), 3) +
+            " times as likely as with the ground alone (95 %: " + with_digits(std::exp(nats.interval.low), 3) + " to " +
+            with_digits(std::exp(nats.interval.high), 3) + ")" +
+            (nats.interval.low <= 0.0 ? ": there may be no gain." : ".");
   if (!std::isnan(rows.climatology.total))
     text += " The climatology has "_html + with_decimals(rows.climatology.total, 3) + ". " + skill_sentence(rows) + ".";
   return text;

@@ -7,7 +7,7 @@
 #include <ctime>
 
 #include "io/results/acting_record.hpp"
-#include "io/results/recorded_profile.hpp"
+#include "io/results/recorded_run.hpp"
 #include "io/results/recorded_screens.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
@@ -100,7 +100,7 @@ RunFacts facts_of(const Json& json) {
   run.command = command_of(json);
   run.status = json.value("status", "");
   run.plan = json.value("plan", "");
-  run.plan_of_hazard = json.contains("rounds") ? json.at("rounds").value("plan", "") : run.plan;
+  run.plan_of_hazard = plan_of_tally(json);
   run.of_profile = is_of_profile(json);
   run.deformation_coefficient = number_of(json, "deformation_coefficient");
   read_counts(json, run);

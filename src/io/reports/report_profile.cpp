@@ -53,8 +53,8 @@ Markup profile_html(const ProfilePart& part) {
     html.add_value("data:image/svg+xml;base64," + base64_of(part.drawing)) +=
         "\"><figcaption>profile.svg; the figures are in envelope.csv and runout.csv.</figcaption></figure>\n";
   }
-  if (part.reaches.empty()) return html;
-  html += "<table><tr><th>blocks</th><th>go farther than [m in x from the release]</th></tr>\n";
+  if (!(part.end > 0.0)) return html;
+  html += "<table><tr><th>at most</th><th>of the blocks go farther than [m in x from the release]</th></tr>\n";
   for (const auto& [share, distance] : part.reaches)
     html += "<tr><td class='n'>"_html + percent(share) + "</td><td class='n'>" +
             (std::isnan(distance) ? with_digits(part.end, 4) + " or more, where the profile ends"

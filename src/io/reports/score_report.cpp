@@ -79,7 +79,7 @@ double unseen_share(const Score& score) {
 
 /// Skill against the climatology; NaN for a model that hardly simulates what was measured.
 Reduction skill_of(const Score& score, const Score& climatology, std::span<const std::uint32_t> clusters) {
-  if (score.rows.empty() || hardly_simulated(score)) return {};
+  if (score.rows.empty() || climatology.rows.empty() || hardly_simulated(score)) return {};
   return reduction(climatology, score, clusters);
 }
 
@@ -101,7 +101,8 @@ struct Rival {
 Rival rival_of(const ScoredRows& s) {
   if (s.ways.total < s.climatology.total)
     return {s.ways.total, s.skill_over_ways,
-            with_decimals(s.ways.total, 3) + " of the other blocks' ways, begun at the release of each"};
+            with_decimals(s.ways.total, 3) +
+                " of the climatology by release (the other blocks' ways from their releases, begun at this block's)"};
   return {s.climatology.total, s.skill,
           "the climatology's " + with_decimals(s.climatology.total, 3) +
               (s.deposits ? " (blocks anywhere on the mapped ground)" : "")};
@@ -217,9 +218,12 @@ ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<c
   out.intervals = score_intervals(out.score, clusters);
   out.climatology = score_of_climatology(campaign, ask, how);
   out.climatology_interval = score_intervals(out.climatology, clusters).total;
-  ScoreOptions knowing_releases = how;
-  knowing_releases.ways_from_release = true;
-  out.ways = score_of_climatology(campaign, ask, knowing_releases);
+  if (campaign.deposits == nullptr) {
+    ScoreOptions knowing_releases = how;
+    knowing_releases.ways_from_release = true;
+    out.ways = score_of_climatology(campaign, ask, knowing_releases);
+    out.ways_interval = score_intervals(out.ways, clusters).total;
+  }
   ScoreOptions without_own = how;
   without_own.own_value_too = false;
   out.compared = folds.empty() ? score(campaign, runs, ask, without_own) : out.score;  // out of fold no row has it
@@ -364,6 +368,10 @@ std::string score_table(const ScoreSettings& settings, std::span<const ScoredRow
   text += "\n" + padded("climatology", width);
   for (const ScoredRows& s : scores)
     text += cell(s.climatology.total, s.climatology_interval, s.climatology.rows.size());
+  if (std::ranges::any_of(scores, [](const ScoredRows& s) { return s.ways.total < s.climatology.total; })) {
+    text += "\n" + padded("climatology by release", width);
+    for (const ScoredRows& s : scores) text += cell(s.ways.total, s.ways_interval, s.ways.rows.size());
+  }
   text += "\n" + padded("run-out tail", width);
   for (const ScoredRows& s : scores) text += cell(s.tail.total, s.tail_interval, s.tail.rows.size());
   return text + "\n" + notes_of(scores);

@@ -5,7 +5,7 @@
 #include "acting_record.hpp"
 #include "io/files/json.hpp"
 #include "io/gdal/regular_file.hpp"
-#include "recorded_profile.hpp"
+#include "recorded_run.hpp"
 #include "recorded_screens.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -174,11 +174,7 @@ RunSummary read_run(const std::filesystem::path& folder) {
 void require_plan_of_tally(const std::filesystem::path& folder, const std::string& plan) {
   const std::filesystem::path file = folder / "run.json";
   const std::string text = read_file(file.string(), file.string(), "a record of talus run", kMostRecord);
-  const std::string recorded = understood(file, kRunAgain, [&] {
-    const Json json = parsed_record(text);
-    const std::string of_round = json.value("plan", "");
-    return json.contains("rounds") ? json.at("rounds").value("plan", of_round) : of_round;
-  });
+  const std::string recorded = understood(file, kRunAgain, [&] { return plan_of_tally(parsed_record(text)); });
   if (!recorded.empty() && recorded != plan)
     throw InputError((folder / kHazardFile).string() +
                      ": is of another run than run.json beside it; copy both from one folder, or run again");

@@ -23,6 +23,7 @@ struct ScoredRows {
   Score compared;   ///< as `score`, but rows with too few simulated values score exactly as the climatology
   Reduction skill;  ///< by which the model, as `compared`, lowers the climatology's error
   Score ways;       ///< of the climatology that knows the releases: ScoreOptions::ways_from_release
+  Interval ways_interval;
   Reduction skill_over_ways;
   /// Numbers that were fitted to these rows, those that the prior holds counted as less than one (`effective_numbers`);
   /// NaN: some, not counted.

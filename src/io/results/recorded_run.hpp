@@ -6,4 +6,7 @@ namespace talus::io {
 /// Whether a run.json is of `talus profile`: among its inputs is a profile, or a line over a DEM. Never throws.
 bool is_of_profile(const Json& run);
 
+/// The plan that hazard_tally.gz of a run has: that of all its rounds together. Empty if the record has none.
+std::string plan_of_tally(const Json& run);
+
 }  // namespace talus::io

@@ -1,4 +1,4 @@
-#include "recorded_profile.hpp"
+#include "recorded_run.hpp"
 
 #include <algorithm>
 
@@ -10,6 +10,11 @@ bool is_of_profile(const Json& run) {
     if (!input.is_object() || !input.contains("role")) return false;
     return input.at("role") == "profile" || input.at("role") == "line";
   });
+}
+
+std::string plan_of_tally(const Json& run) {
+  const std::string plan = run.value("plan", "");
+  return run.contains("rounds") ? run.at("rounds").value("plan", plan) : plan;
 }
 
 }  // namespace talus::io
