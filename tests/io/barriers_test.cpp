@@ -19,7 +19,7 @@ class BarrierFile : public Files {
 
 TEST_F(BarrierFile, EachFeatureWithItsNumbers) {
   const BarrierLayer layer = read(fields_, {{"LINESTRING(10 20,30 40)", {"road", "4.5", "1000"}},
-                                            {"MULTILINESTRING((1 1,2 2),(3 3,4 5))", {"road", "2", "inf"}}});
+                                            {"MULTILINESTRING((11 11,12 12),(13 13,14 15))", {"road", "2", "inf"}}});
   ASSERT_EQ(layer.barriers.size(), 2U);
   EXPECT_EQ(layer.barriers[0].id, "road");
   EXPECT_EQ(layer.barriers[0].height, 4.5);
@@ -28,6 +28,11 @@ TEST_F(BarrierFile, EachFeatureWithItsNumbers) {
   EXPECT_EQ(layer.barriers[1].lines.size(), 2U);
   EXPECT_TRUE(std::isinf(layer.barriers[1].capacity));
   EXPECT_TRUE(layer.warnings.empty());
+}
+
+TEST_F(BarrierFile, PartlyWhereTheTerrainEndsIsSaid) {
+  const BarrierLayer layer = read(fields_, {{"LINESTRING(-40 20,40 20)", {"road", "4", "1000"}}});
+  EXPECT_TRUE(said(layer.warnings, " of barrier road: blocks do not get there, so that nothing is caught there"));
 }
 
 TEST_F(BarrierFile, WithoutIdsTheyHaveTheirNames) {
