@@ -400,8 +400,7 @@ std::optional<std::string> energy_note(const BarrierReport& report, std::span<co
   if (!(energy > largest)) return std::nullopt;
   return "the largest block at the speed of the percentile has " + talus::with_digits(1e-3 * energy, 4) +
          " kJ, more than any crossing of the run (" + talus::with_digits(1e-3 * largest, 4) +
-         " kJ): the largest block and the speed are not of one fall. Where the block of the design is known, give it "
-         "by "
+         " kJ): this mass and this speed come in no one fall. Where the block of the design is known, give it by "
          "--volume";
 }
 

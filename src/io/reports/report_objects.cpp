@@ -197,10 +197,9 @@ Markup objects_html(const ObjectsPart& part, bool pieces, const std::vector<std:
       "event\": no block of this run did it; it may happen all the same, as often as the upper bound. Energies are the "
       "largest within the outline (safe for what does not stop a block: a yard, a road); at the first touch, for a "
       "wall, they are in objects.csv (entry), at a barrier in its table. The class is that of the object by these "
-      "frequencies, the map \"Hazard class\" has that of each cell: a long object is hit more often than any place of "
-      "it, "
-      "and its class may be higher than that of every cell; cut a road into sections of one length to compare "
-      "them.</p>\n"_html;
+      "frequencies, the map \"Hazard class\" has that of each cell: the longer an object, "
+      "the more often it is hit, and its class may be higher than that of every cell. To compare parts of a road, cut "
+      "it into sections of one length.</p>\n"_html;
   if (pieces) html += "<p>Blocks broke, and "_html + kHitsOfPieces + ".</p>\n";
   html += "<div class='wide'><table><tr><th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
   for (const std::string& energy : part.thresholds) html += "<th>above "_html + energy + " kJ once in [years]</th>";
