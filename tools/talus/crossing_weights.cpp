@@ -6,8 +6,8 @@
 
 #include "talus/base/error.hpp"
 #include "talus/io/results/hazard_file.hpp"
-#include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/recorded_plan.hpp"
+#include "talus/io/results/run_folder.hpp"
 #include "talus/simulate/plan/work_units.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
 
