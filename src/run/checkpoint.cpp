@@ -79,8 +79,7 @@ std::string differences(const std::vector<Setting>& before, const std::vector<Se
     if (const std::string was = value_in(before, s.key); without_folder(was) != without_folder(s.value))
       words.push_back(s.key + " " + s.value + " instead of " + was);
   for (const Setting& s : before)
-    if (std::ranges::find(now, s.key, &Setting::key) == now.end())
-      words.push_back("no " + s.key + " instead of " + s.value);
+    if (!std::ranges::count(now, s.key, &Setting::key)) words.push_back("no " + s.key + " instead of " + s.value);
   for (const io::InputFile& file : files_now) {
     if (file.role == "scenario" || file.role == "include") continue;  // their settings are above
     const auto was = std::ranges::find(files_before, file.role, &io::InputFile::role);
@@ -103,6 +102,10 @@ Json json_of(const std::vector<File>& files) {
 }
 
 }  // namespace
+
+std::string name_of(const Part& part) {
+  return std::to_string(part.number) + "/" + std::to_string(part.of);
+}
 
 struct Checkpoint::Rows {
   RowsWriter writer;
@@ -141,8 +144,8 @@ Checkpoint Checkpoint::opened(const fs::path& folder, const LoadedScenario& load
 
 void Checkpoint::require_part(const Part& asked, const std::string& out) const {
   if (part_.number == asked.number && part_.of == asked.of) return;
-  throw InputError(out + ": what is kept there is part " + std::to_string(part_.number) + "/" +
-                   std::to_string(part_.of) + "; give that with --part, or another folder");
+  throw InputError(out + ": what is kept there is part " + name_of(part_) +
+                   "; give that with --part, or another folder");
 }
 
 std::vector<Setting> Checkpoint::settings(std::uint32_t rounds) const {

@@ -41,10 +41,6 @@ LoadedScenario scenario_of(std::span<const std::string> parts, MemoryPolicy memo
   return scenario_of(parts.subspan(1), memory, threads);
 }
 
-std::string name_of(const Part& part) {
-  return std::to_string(part.number) + "/" + std::to_string(part.of);
-}
-
 /// "3 rounds (--above 0.01)"; of one round only that.
 std::string asked_text(const Rounds& asked) {
   if (!asked.several()) return "1 round";

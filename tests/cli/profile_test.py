@@ -481,8 +481,8 @@ class Products(Profile):
         (drawing,) = re.findall(r'src="data:image/svg\+xml;base64,([^"]+)"', page)
         self.assertEqual(base64.b64decode(drawing).decode(), self.read_text("profile/profile.svg"))
         beyond = [(float(r["distance_to"]), float(r["share_beyond"])) for r in self.read_table("profile/runout.csv")]
-        tenth = next((to for to, share in beyond if share <= 0.1), None)
-        self.assertIn("<td class='n'>10 %</td><td class='n'>" + ("" if tenth is None else f"{tenth:.4g}</td>"), page)
+        half = next(to for to, share in beyond if share <= 0.5)
+        self.assertIn(f"<td class='n'>50 %</td><td class='n'>{half:.4g}</td>", page)
 
     def test_flags_that_notes_name_are_of_the_command_that_made_the_folder(self):
         line = f"LINESTRING ({WEST + 20} {NORTH - 180}, {WEST + 280} {NORTH - 180})"

@@ -94,6 +94,15 @@ TEST_F(Campaigns, DoubledPassagesAreSaidOnce) {
   EXPECT_TRUE(two[0].ends_with("the first one counts; so it is in 1 more rows")) << two[0];
 }
 
+TEST_F(Campaigns,
+       DoubledSamplesCountOnce) {  // of another speed: two states at one place, as before and after an impact
+  write_text("samples.csv", "id,x,y,speed_ms\na,600053,5200036,7\na,600053,5200036,9\na,600053,5200036,7\n");
+  const LoadedCampaign loaded = read("samples = \"samples.csv\"\n");
+  EXPECT_EQ(loaded.campaign.blocks[0].samples.size(), 2U);
+  ASSERT_EQ(loaded.warnings.size(), 1U);
+  EXPECT_TRUE(loaded.warnings[0].ends_with("of which the first one counts: lines 4")) << loaded.warnings[0];
+}
+
 TEST_F(Campaigns, MassesInAnotherUnitAreSaid) {
   const std::string head = "id,x,y,release_height_m,mass_kg,L1_m,L2_m,L3_m\n", sphere = "b,600060,5200040,1,500,,,\n";
   const auto warnings = [&](const std::string& mass) {

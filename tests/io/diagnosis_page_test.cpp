@@ -169,6 +169,26 @@ TEST(DiagnosisPage, ASignificantFamilyIsNoNoise) {
   EXPECT_TRUE(says(record_of(0.3, 0.01), something));
 }
 
+/// theta_scale on the log scale, a factor of e from its start, within a third of a unit: by hand.
+TEST(DiagnosisPage, ShowsTheGroundThatWasFitted) {
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  record.diagnosis.stability.fits.resize(1);
+  Parameter p;
+  p.key = "ground.zones.talus.theta_scale";
+  p.lower = 0.01, p.upper = 10.0, p.centre = 0.4;
+  p.get = [](const Model&) { return 0.147; };
+  FittedModel& base = record.diagnosis.base;
+  base.free = {p};
+  base.z = Eigen::VectorXd::Constant(1, -1.0);
+  base.spread = Eigen::MatrixXd::Constant(1, 1, 1.0 / 9.0);
+  const std::string page = diagnosis_page(Campaign{}, record);
+  EXPECT_EQ(count_of(page,
+                     "<td class='b'>ground.zones.talus.theta_scale</td><td>0.4</td><td>0.147</td>"
+                     "<td>0.105 to 0.205</td><td>0.147</td>"),
+            1U);
+  EXPECT_EQ(count_of(page, "One fit of the ground was made"), 1U);
+}
+
 TEST(DiagnosisPage, SaysWhereTheFittedNumbersDidNotSettle) {
   DiagnosisRecord record = record_of(0.05, 0.01);
   record.diagnosis.stability.fits.resize(1);

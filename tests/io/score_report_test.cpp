@@ -153,6 +153,29 @@ TEST(Scored, RowsWithoutSimulatedValuesAreNoSkill) {
   EXPECT_NEAR(rows.skill.share, 1.0 - rows.compared.total / climatology, 1e-12);
 }
 
+/// Releases 100 m apart, ways that differ by 2 m at most, and a model that is 20 m off each place of rest: by far
+/// nearer than the places of the others, but not than their ways.
+TEST(Scored, TheWaysOfTheOthersAreARivalOfTheModel) {
+  Campaign campaign;
+  std::vector<BlockRuns> runs(12);
+  for (std::uint32_t b = 0; b < 12; ++b) {
+    MeasuredBlock& block = campaign.blocks.emplace_back();
+    block.stream = b;
+    block.x = 100.0 * b;
+    block.stop = Eigen::Vector2d(block.x + b % 3, 40.0);
+    runs[b].trials = 20;
+    runs[b].x.assign(20, block.stop->x() + 20.0);
+    runs[b].y.assign(20, 40.0);
+  }
+  const ScoredRows rows = scored("fit", campaign, runs, std::vector<bool>(12, true));
+  EXPECT_GT(rows.skill.share, 0.5);
+  EXPECT_LT(rows.skill_over_ways.share, 0.0);
+  const std::string said = skill_sentence(rows);
+  EXPECT_TRUE(said.starts_with("fitting rows: no skill: ")) << said;
+  EXPECT_NE(said.find(" of the climatology by release"), std::string::npos) << said;
+  EXPECT_NE(score_table({}, {&rows, 1}).find("\nclimatology by release "), std::string::npos);
+}
+
 /// Four numbers fitted to two groups, of 12 and of 2 rows, gain 4 x 0.56 (1/12 + 1/2) / 4 = 0.327 on these rows without
 /// any skill (Akaike): of a climatology of 0.56 that is 58.3 %. A skill is one only if its interval lies above that.
 TEST(SkillSentence, OfFittedRowsTakesWhatTheFitGains) {

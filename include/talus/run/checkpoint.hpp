@@ -16,6 +16,9 @@ using io::Setting;
 /// Manifest: names all other files of a checkpoint. docs/regions.md, "Files of a part".
 inline constexpr const char* kCheckpointManifest = "part.json";
 
+/// "1/2".
+std::string name_of(const Part& part);
+
 /// Saved work of a run or of a part: the tally, the rows of stops, crossings and paths, and the position in the plan.
 /// An interrupted run resumes from it; `talus merge` joins the checkpoints of the parts.
 ///

@@ -85,19 +85,6 @@ class HeightReader {
 /// Heights in steps of 10 m: what lies far from all others is found. The same in any order of the cells.
 class HeightSteps {
  public:
-  void add(double height) {
-    Step& step = steps_[static_cast<std::size_t>((height - kLowest) / kStep)];
-    step.cells += 1;
-    step.low = std::min(step.low, height), step.high = std::max(step.high, height);
-  }
-  void add(const HeightSteps& other) {
-    for (std::size_t i = 0; i < steps_.size(); ++i) {
-      steps_[i].cells += other.steps_[i].cells;
-      steps_[i].low = std::min(steps_[i].low, other.steps_[i].low);
-      steps_[i].high = std::max(steps_[i].high, other.steps_[i].high);
-    }
-  }
-
   /// Some cells of like heights.
   struct Group {
     std::uint64_t cells = 0;
@@ -108,24 +95,28 @@ class HeightSteps {
       low = std::min(low, other.low), high = std::max(high, other.high);
     }
   };
+
+  void add(double height) { steps_[static_cast<std::size_t>((height - kLowest) / kStep)].add({1, height, height}); }
+  void add(const HeightSteps& other) {
+    for (std::size_t i = 0; i < steps_.size(); ++i) steps_[i].add(other.steps_[i]);
+  }
+
   /// The cells below the widest range without heights, and those above it.
   std::pair<Group, Group> parted() const {
-    Group below, all;
+    Group below, all, above;
     double widest = 0.0;
-    for (const Step& step : steps_) {
+    for (const Group& step : steps_) {
       if (step.cells > 0 && all.cells > 0 && step.low - all.high > widest) widest = step.low - all.high, below = all;
-      if (step.cells > 0) all.add(step);
+      all.add(step);
     }
-    Group above;
-    for (const Step& step : steps_)
-      if (step.cells > 0 && step.low > below.high) above.add(step);
+    for (const Group& step : steps_)
+      if (step.low > below.high) above.add(step);
     return {below, above};
   }
 
  private:
-  using Step = Group;
   static constexpr double kStep = 10.0;
-  std::array<Step, static_cast<std::size_t>((kHighest - kLowest) / kStep) + 1> steps_{};
+  std::array<Group, static_cast<std::size_t>((kHighest - kLowest) / kStep) + 1> steps_{};
 };
 
 /// Counts of heights: the same in any order of the pieces.

@@ -92,7 +92,7 @@ std::string skill_text(const Reduction& skill) {
          with_decimals(100.0 * skill.interval.high, 1) + " %)";
 }
 
-/// What a model must beat: the climatology with the smaller error.
+/// The climatology with the smaller error, of the places or by release: a model has skill if it beats this one.
 struct Rival {
   double error;
   Reduction skill;  // over it
