@@ -80,41 +80,47 @@ VectorXd Directions::add_free(const TestedModel& base, const Observer& observed,
   return steps;
 }
 
-VectorXd Directions::of_block(std::size_t i, const Residual& residual) const {
-  const VectorXd whitened = space_.whitened(residual);
-  VectorXd s(size());
-  for (Index k = 0; k < size(); ++k)
-    s[k] = signatures_[static_cast<std::size_t>(k)].row(static_cast<Index>(i)).dot(whitened);
-  return s;
+MatrixXd Directions::measured() const {
+  MatrixXd residuals(space_.size(), std::ssize(blocks_));
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    residuals.col(static_cast<Index>(i)) = space_.of_measured(blocks_[i]);
+  return residuals;
+}
+
+std::vector<MatrixXd> Directions::trials_of(const std::vector<BlockRuns>& moved) const {
+  std::vector<MatrixXd> trials;
+  for (const std::size_t block : blocks_) {
+    trials.emplace_back(space_.size(), moved[block].trials);
+    for (Index t = 0; t < trials.back().cols(); ++t)
+      trials.back().col(t) = space_.of_trial(block, moved[block], static_cast<std::size_t>(t));
+  }
+  return trials;
+}
+
+MatrixXd Directions::scores_of(std::size_t i, const MatrixXd& trials) const {
+  MatrixXd scores(size(), trials.cols());
+  for (Index t = 0; t < trials.cols(); ++t) {
+    const VectorXd whitened = space_.whitened(trials.col(t));
+    for (Index k = 0; k < size(); ++k)
+      scores(k, t) = signatures_[static_cast<std::size_t>(k)].row(static_cast<Index>(i)).dot(whitened);
+  }
+  return scores;
 }
 
 CampaignScores Directions::scores() const {
   CampaignScores out;
   out.measured = VectorXd::Zero(size());
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    const std::size_t block = blocks_[i];
-    MatrixXd u(size(), base_[block].trials);
-    for (Index t = 0; t < u.cols(); ++t)
-      u.col(t) = of_block(i, space_.of_own_trial(block, base_[block], static_cast<std::size_t>(t)));
-    out.means.emplace_back(u.rowwise().mean());
-    u.colwise() -= out.means.back();
-    out.measured += of_block(i, space_.of_measured(block)) - out.means.back();
-    out.trials.push_back(std::move(u));
+    const BlockRuns& base = base_[blocks_[i]];
+    MatrixXd trials(space_.size(), base.trials);
+    for (Index t = 0; t < trials.cols(); ++t)
+      trials.col(t) = space_.of_own_trial(blocks_[i], base, static_cast<std::size_t>(t));
+    out.trials.push_back(scores_of(i, trials));
+    out.means.emplace_back(out.trials.back().rowwise().mean());
+    out.trials.back().colwise() -= out.means.back();
+    out.measured += scores_of(i, space_.of_measured(blocks_[i])) - out.means.back();
   }
   return out;
-}
-
-std::vector<MatrixXd> Directions::scores_of(const std::vector<BlockRuns>& moved,
-                                            const std::vector<VectorXd>& means) const {
-  std::vector<MatrixXd> trials;
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    const BlockRuns& runs = moved[blocks_[i]];
-    MatrixXd u(size(), runs.trials);
-    for (Index t = 0; t < u.cols(); ++t)
-      u.col(t) = of_block(i, space_.of_trial(blocks_[i], runs, static_cast<std::size_t>(t))) - means[i];
-    trials.push_back(std::move(u));
-  }
-  return trials;
 }
 
 MatrixXd covariance_of(const std::vector<MatrixXd>& trials) {

@@ -29,17 +29,19 @@ class Directions {
   Eigen::VectorXd add_free(const TestedModel& base, const Observer& observed, const DiagnosisRules& rules);
 
   Eigen::Index size() const { return std::ssize(signatures_); }
+  const std::vector<std::size_t>& blocks() const { return blocks_; }
   std::span<const std::uint32_t> streams() const { return streams_; }
 
+  /// Residuals of what was measured: components x blocks.
+  Eigen::MatrixXd measured() const;
+  /// By block: residuals of trials of a moved base, as if they had been measured; components x trials.
+  std::vector<Eigen::MatrixXd> trials_of(const std::vector<BlockRuns>& moved) const;
+
   CampaignScores scores() const;
-  /// By block: the scores of trials of a moved base, as if they had been measured; one column each.
-  std::vector<Eigen::MatrixXd> scores_of(const std::vector<BlockRuns>& moved,
-                                         const std::vector<Eigen::VectorXd>& means) const;
+  /// The scores of trials of block number i: directions x trials.
+  Eigen::MatrixXd scores_of(std::size_t i, const Eigen::MatrixXd& trials) const;
 
  private:
-  /// Scores of a residual of block number i, by direction.
-  Eigen::VectorXd of_block(std::size_t i, const Residual& residual) const;
-
   const ResidualSpace& space_;
   const std::vector<BlockRuns>& base_;
   std::vector<std::size_t> blocks_;

@@ -1,30 +1,22 @@
 #include "talus/fit/diagnose/dispersion.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
-#include "talus/fit/campaign/block_draws.hpp"
 #include "talus/fit/diagnose/score_test.hpp"
 
 namespace talus {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 constexpr double kP95 = 1.6448536269514722;
-constexpr double kFewest = 10.0;  // freedom that a row needs
-
-/// Places z of some observables by block.
-using Places = std::vector<Residual>;
-
-/// A row of the test: the observables that it sums up, of one kind.
-struct Scatter {
-  std::string what;
-  std::vector<std::size_t> observables;
-  bool tail = false;
-};
+/// Freedom that a kind needs: blocks less groups, of all its observables.
+constexpr std::size_t kFewest = 10;
 
 const char* name_of(Observable::Kind kind) {
   using Kind = Observable::Kind;
@@ -50,16 +42,16 @@ const char* name_of(Observable::Kind kind) {
   return nullptr;
 }
 
-std::vector<Scatter> scatters_of(const ResidualSpace& space) {
-  std::vector<Scatter> list;
+std::vector<Scatters::Kind> kinds_of(const ResidualSpace& space) {
+  std::vector<Scatters::Kind> list;
   for (std::size_t o = 0; o < space.observables().size(); ++o) {
     const char* name = name_of(space.observables()[o].kind);
     if (name == nullptr) continue;
-    auto row = std::find_if(list.begin(), list.end(), [&](const Scatter& s) { return s.what == name; });
-    if (row == list.end()) row = list.insert(row, {name, {}, false});
-    row->observables.push_back(o);
+    auto kind = std::ranges::find(list, name, &Scatters::Kind::what);
+    if (kind == list.end()) kind = list.insert(kind, {name, {}, false});
+    kind->observables.push_back(static_cast<Index>(o));
   }
-  const auto runout = std::find_if(list.begin(), list.end(), [](const Scatter& s) { return s.what == "runout"; });
+  const auto runout = std::ranges::find(list, "runout", &Scatters::Kind::what);
   if (runout != list.end()) list.push_back({"runout beyond P95", runout->observables, true});
   return list;
 }
@@ -74,116 +66,93 @@ std::vector<std::size_t> groups_of(const Campaign& campaign, const std::vector<s
   return groups;
 }
 
-struct Scattered {
-  double statistic = 1.0, freedom = 0.0;
+/// Squares of z about the means of the groups.
+struct Squares {
+  double sum = 0.0;
+  std::size_t freedom = 0;
 };
 
-/// z of an observable, of the blocks of which it was seen, less the mean of their group.
-std::vector<double> about_groups(const Places& places, Index observable, const std::vector<std::size_t>& groups,
-                                 double& freedom) {
-  std::vector<double> sums(groups.size(), 0.0), counts = sums, about;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    if (!std::isnan(places[i][observable])) sums[groups[i]] += places[i][observable], counts[groups[i]] += 1.0;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    if (!std::isnan(places[i][observable]))
-      about.push_back(places[i][observable] - sums[groups[i]] / counts[groups[i]]);
-  freedom = static_cast<double>(
-      about.size() - static_cast<std::size_t>(std::ranges::count_if(counts, [](double n) { return n > 0.0; })));
-  return about;
+Squares about_groups(const Scatters::Kind& kind, const MatrixXd& residuals, const std::vector<std::size_t>& groups) {
+  Squares out;
+  for (const Index o : kind.observables) {
+    std::vector<double> sums(groups.size(), 0.0), counts = sums;
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      if (const double z = residuals(o, static_cast<Index>(i)); !std::isnan(z))
+        sums[groups[i]] += z, counts[groups[i]] += 1.0, ++out.freedom;
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      if (const double z = residuals(o, static_cast<Index>(i)); !std::isnan(z))
+        out.sum += std::pow(z - sums[groups[i]] / counts[groups[i]], 2);
+    out.freedom -= static_cast<std::size_t>(std::ranges::count_if(counts, [](double n) { return n > 0.0; }));
+  }
+  return out;
 }
 
 /// Share of z beyond P95: of z itself, as about the mean of a group nothing would be beyond where all are.
-double share_beyond_p95(const Scatter& scatter, const Places& places) {
+double share_beyond_p95(const Scatters::Kind& kind, const MatrixXd& residuals) {
   double beyond = 0.0, seen = 0.0;
-  for (const std::size_t o : scatter.observables)
-    for (const Residual& place : places) {
-      const double z = place[static_cast<Index>(o)];
+  for (const Index o : kind.observables)
+    for (const double z : residuals.row(o)) {
       if (std::isnan(z)) continue;
       beyond += z > kP95 ? 1.0 : 0.0;
       seen += 1.0;
     }
-  return beyond / seen;
+  return seen > 0.0 ? beyond / seen : 0.0;
 }
 
-/// Mean square about the means of the groups, over the freedom that they leave; of a tail the share beyond P95.
-Scattered measure(const Scatter& scatter, const Places& places, const std::vector<std::size_t>& groups) {
-  Scattered out;
-  double squares = 0.0;
-  for (const std::size_t o : scatter.observables) {
-    double freedom = 0.0;
-    for (const double z : about_groups(places, static_cast<Index>(o), groups, freedom)) squares += z * z;
-    out.freedom += freedom;
-  }
-  if (out.freedom > 0.0) out.statistic = scatter.tail ? share_beyond_p95(scatter, places) : squares / out.freedom;
-  return out;
+/// Numbers that are about normal: the logarithm of a variance, a share as it is.
+VectorXd scaled(const VectorXd& statistics, bool tail) {
+  return tail ? statistics : VectorXd(statistics.cwiseMax(1e-12).array().log());
 }
 
-/// Residuals of a data set drawn from the model: of one trial of each block.
-Places drawn(const Campaign& campaign, const std::vector<std::size_t>& blocks,
-             const std::vector<std::vector<Residual>>& trials, std::uint64_t seed, int replicate) {
-  Places places;
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const double share =
-        draw_of_block(seed, campaign.blocks[blocks[i]].stream, static_cast<std::uint32_t>(replicate), BlockDraw::Trial);
-    places.push_back(trials[i][static_cast<std::size_t>(share * static_cast<double>(trials[i].size()))]);
-  }
-  return places;
-}
-
-/// How rare each value is among all: less its distance from their mean in standard deviations, in either direction; of
-/// a tail upwards only. The smallest is the rarest.
-std::vector<double> rarity_of(const std::vector<double>& values, bool tail) {
-  const auto scale = [tail](double v) { return tail ? v : std::log(std::max(v, 1e-12)); };
-  const auto n = static_cast<double>(values.size());
-  double sum = 0.0, squares = 0.0;
-  for (const double v : values) sum += scale(v);
-  for (const double v : values) squares += std::pow(scale(v) - sum / n, 2);
-  const double sd = std::sqrt(std::max(squares / n, 1e-300));
-  std::vector<double> rarity;
-  for (const double v : values) {
-    const double away = (scale(v) - sum / n) / sd;
-    rarity.push_back(tail ? -away : -std::abs(away));
-  }
-  return rarity;
+/// A constant and the scores, by set.
+MatrixXd explained_by(const MatrixXd& scores) {
+  MatrixXd x(scores.cols(), scores.rows() + 1);
+  x << VectorXd::Ones(scores.cols()), scores.transpose();
+  return x;
 }
 
 }  // namespace
 
-DispersionTest dispersion_test(const Campaign& campaign, const ResidualSpace& space, const std::vector<BlockRuns>& runs,
-                               const std::vector<bool>& rows, int replicates, std::uint64_t seed) {
-  std::vector<std::size_t> blocks;
-  std::vector<std::vector<Residual>> trials;
-  Places measured;
-  for (std::size_t b = 0; b < rows.size(); ++b) {
-    if (!rows[b] || runs[b].trials == 0) continue;
-    blocks.push_back(b);
-    measured.push_back(space.of_measured(b));
-    trials.emplace_back();
-    for (std::size_t t = 0; t < runs[b].trials; ++t) trials.back().push_back(space.of_own_trial(b, runs[b], t));
+Scatters::Scatters(const Campaign& campaign, const ResidualSpace& space, const std::vector<std::size_t>& blocks,
+                   const MatrixXd& measured)
+    : kinds_(kinds_of(space)), groups_(groups_of(campaign, blocks)) {
+  std::erase_if(kinds_, [&](const Kind& kind) { return about_groups(kind, measured, groups_).freedom < kFewest; });
+}
+
+VectorXd Scatters::of(const MatrixXd& residuals) const {
+  VectorXd out(std::ssize(kinds_));
+  for (std::size_t k = 0; k < kinds_.size(); ++k) {
+    const Squares squares = about_groups(kinds_[k], residuals, groups_);
+    const double variance = squares.freedom > 0 ? squares.sum / static_cast<double>(squares.freedom) : 1.0;
+    out[static_cast<Index>(k)] = kinds_[k].tail ? share_beyond_p95(kinds_[k], residuals) : variance;
   }
-  const std::vector<std::size_t> groups = groups_of(campaign, blocks);
-  std::vector<Scatter> scatters = scatters_of(space);
-  std::erase_if(scatters, [&](const Scatter& s) { return measure(s, measured, groups).freedom < kFewest; });
+  return out;
+}
+
+DispersionTest dispersion_test(const std::vector<Scatters::Kind>& kinds, const ScatteredSets& drawn,
+                               const ScatteredSets& measured) {
   DispersionTest test;
-  if (scatters.empty()) return test;
-  std::vector<std::vector<double>> values(scatters.size());  // by row: of the drawn sets, then the measured one
-  for (int replicate = 0; replicate < replicates; ++replicate) {
-    const Places places = drawn(campaign, blocks, trials, seed, replicate);
-    for (std::size_t s = 0; s < scatters.size(); ++s)
-      values[s].push_back(measure(scatters[s], places, groups).statistic);
-  }
+  if (kinds.empty() || drawn.scatters.cols() == 0) return test;
+  const MatrixXd sets = explained_by(drawn.scores), own_set = explained_by(measured.scores);
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> regression(sets);
+  std::vector<std::vector<double>> rarity;  // by kind and drawn set: the smaller the rarer
   std::vector<double> own;
-  for (std::size_t s = 0; s < scatters.size(); ++s) {
-    const double expected = std::accumulate(values[s].begin(), values[s].end(), 0.0) / replicates;
-    const double statistic = measure(scatters[s], measured, groups).statistic;
-    values[s].push_back(statistic);
-    values[s] = rarity_of(values[s], scatters[s].tail);
-    own.push_back(values[s].back());
-    values[s].pop_back();
-    test.rows.push_back({scatters[s].what, statistic, expected, 1.0});
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    const bool tail = kinds[k].tail;
+    const VectorXd drawn_of = drawn.scatters.row(static_cast<Index>(k)).transpose();
+    const VectorXd measured_of = measured.scatters.row(static_cast<Index>(k)).transpose();
+    const VectorXd slope = regression.solve(scaled(drawn_of, tail));
+    const VectorXd away = scaled(drawn_of, tail) - sets * slope;
+    const double own_away = (scaled(measured_of, tail) - own_set * slope)[0];
+    const double sd = std::sqrt(std::max(away.squaredNorm() / static_cast<double>(away.size()), 1e-300));
+    const auto rare = [&](double a) { return -(tail ? a : std::abs(a)) / sd; };  // a tail is too long, never too short
+    rarity.emplace_back();
+    for (const double a : away) rarity.back().push_back(rare(a));
+    own.push_back(rare(own_away));
+    test.rows.push_back({kinds[k].what, measured_of[0], drawn_of.mean(), 1.0});
   }
-  const Corrected p = corrected(values, own);
-  for (std::size_t s = 0; s < scatters.size(); ++s) test.rows[s].p_value = p.effects[s];
+  const Corrected p = corrected(rarity, own);
+  for (std::size_t k = 0; k < kinds.size(); ++k) test.rows[k].p_value = p.effects[k];
   test.p_value = p.all;
   test.tested = true;
   return test;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "talus/base/text.hpp"
-#include "talus/fit/diagnose/dispersion.hpp"
 #include "talus/fit/diagnose/energy_component.hpp"
 #include "talus/fit/score/holm.hpp"
 #include "talus/physics/effects/registry.hpp"
@@ -123,10 +122,8 @@ FamilyTest by_score_test(const char* name, const char* needed, const FamilyInput
   return family;
 }
 
-FamilyTest dispersion(const FamilyInput& in, const FamilyOptions& options) {
+FamilyTest dispersion(const DispersionTest& test, const FamilyOptions& options) {
   FamilyTest family = family_with_members(kDispersion, {"rest-in-roughness"});
-  const DispersionTest test =
-      dispersion_test(in.campaign, in.space, in.runs, in.rows, options.replicates, options.seed);
   if (!test.tested) {
     family.note = "at least ten blocks more than there are groups are needed";
     return family;
@@ -156,7 +153,7 @@ std::vector<FamilyTest> test_families(const FamilyInput& input, const FamilyOpti
       block_property(site, options), by_score_test(kPlace, "measured values are needed", input),
       day(input, energy, options),
       by_score_test(kInstrument, "a screen that five blocks crossed, or samples, are needed", input),
-      dispersion(input, options)};
+      dispersion(input.score_test.dispersion, options)};
   std::vector<FamilyTest*> all;
   for (FamilyTest& family : families) all.push_back(&family);
   correct(all);

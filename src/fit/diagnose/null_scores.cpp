@@ -21,16 +21,15 @@ double room_below(const Model& model) {
   return room;
 }
 
-/// One trial of each block stands in for what was measured.
-VectorXd drawn_set(const std::vector<MatrixXd>& trials, std::span<const std::uint32_t> streams, std::uint64_t seed,
-                   std::uint32_t replicate) {
-  VectorXd scores = VectorXd::Zero(trials.front().rows());
+/// A column of the trials of each block, which stands in for what was measured: one column each.
+MatrixXd drawn_set(const std::vector<MatrixXd>& trials, std::span<const std::uint32_t> streams, std::uint64_t seed,
+                   std::uint32_t set) {
+  MatrixXd drawn(trials.front().rows(), std::ssize(trials));
   for (std::size_t b = 0; b < trials.size(); ++b) {
-    const double place =
-        draw_of_block(seed, streams[b], replicate, BlockDraw::Trial) * static_cast<double>(trials[b].cols());
-    scores += trials[b].col(static_cast<Index>(place));
+    const double place = draw_of_block(seed, streams[b], set, BlockDraw::Trial) * static_cast<double>(trials[b].cols());
+    drawn.col(static_cast<Index>(b)) = trials[b].col(static_cast<Index>(place));
   }
-  return scores;
+  return drawn;
 }
 
 }  // namespace
@@ -67,21 +66,28 @@ Model OpenGrounds::model(std::uint64_t seed, std::uint32_t number) const {
   return model;
 }
 
-NullScores null_scores(const OpenGrounds& grounds, const Directions& directions, const std::vector<VectorXd>& means,
-                       const TrialObserver& observed, const ScoreTestOptions& options) {
+NullSets null_sets(const OpenGrounds& grounds, const Directions& directions, const std::vector<VectorXd>& means,
+                   const Scatters& scatters, const TrialObserver& observed, const ScoreTestOptions& options) {
   const auto sets = static_cast<std::uint32_t>(options.replicates);
-  NullScores out{MatrixXd(directions.size(), options.replicates), VectorXd::Zero(directions.size())};
+  NullSets out{MatrixXd(directions.size(), sets), VectorXd::Zero(directions.size()),
+               MatrixXd(std::ssize(scatters.kinds()), sets)};
   if (sets == 0) return out;
   const auto count = static_cast<std::uint32_t>(options.rules.open_grounds);
   const std::uint32_t trials = std::max(4U, options.trials / 16);
   for (std::uint32_t k = 0; k < count; ++k) {
     const std::uint32_t first = kUnseen - (k + 1) * trials;  // no search has used them
-    const auto scores = directions.scores_of(observed(grounds.model(options.seed, k), trials, first), means);
-    for (const MatrixXd& block : scores) out.mean += block.rowwise().mean() / static_cast<double>(count);
-    for (std::uint32_t set = k; set < sets; set += count)
-      out.sets.col(set) = drawn_set(scores, directions.streams(), options.seed, set);
+    const auto residuals = directions.trials_of(observed(grounds.model(options.seed, k), trials, first));
+    std::vector<MatrixXd> scores;
+    for (std::size_t b = 0; b < residuals.size(); ++b) {
+      scores.push_back(directions.scores_of(b, residuals[b]).colwise() - means[b]);
+      out.mean += scores.back().rowwise().mean() / static_cast<double>(count);
+    }
+    for (std::uint32_t set = k; set < sets; set += count) {
+      out.scores.col(set) = drawn_set(scores, directions.streams(), options.seed, set).rowwise().sum();
+      out.scatters.col(set) = scatters.of(drawn_set(residuals, directions.streams(), options.seed, set));
+    }
   }
-  out.sets.colwise() -= out.mean;
+  out.scores.colwise() -= out.mean;
   return out;
 }
 

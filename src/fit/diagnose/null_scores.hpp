@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "directions.hpp"
+#include "talus/fit/diagnose/dispersion.hpp"
 
 namespace talus {
 
@@ -28,10 +29,11 @@ class OpenGrounds {
   Eigen::LLT<Eigen::MatrixXd> root_;  // of the precision of moves over units
 };
 
-/// Scores of data sets without an effect.
-struct NullScores {
-  Eigen::MatrixXd sets;  ///< directions x data sets, less the mean
-  Eigen::VectorXd mean;
+/// Data sets without an effect.
+struct NullSets {
+  Eigen::MatrixXd scores;    ///< directions x sets, less the mean
+  Eigen::VectorXd mean;      ///< of the scores
+  Eigen::MatrixXd scatters;  ///< kinds of quantity x sets
 };
 
 /// Runs of a model: so many trials of each block, from trial number `first`.
@@ -39,8 +41,9 @@ using TrialObserver = std::function<std::vector<BlockRuns>(const Model&, std::ui
 
 /// Draws data sets: each of an open ground, with one trial of each block in the place of what was measured. The true
 /// ground differs from the tested one. A projection removes only the linear part of what this leaves in the residual.
-NullScores null_scores(const OpenGrounds& grounds, const Directions& directions,
-                       const std::vector<Eigen::VectorXd>& means, const TrialObserver& observed,
-                       const ScoreTestOptions& options);
+///
+/// @param means  of the scores of each block's base trials
+NullSets null_sets(const OpenGrounds& grounds, const Directions& directions, const std::vector<Eigen::VectorXd>& means,
+                   const Scatters& scatters, const TrialObserver& observed, const ScoreTestOptions& options);
 
 }  // namespace talus

@@ -197,9 +197,13 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
   const CampaignScores scores = directions.scores();
   const MatrixXd covariance = covariance_of(scores.trials);
   const OpenGrounds grounds(base, steps, scores, covariance, rules);
-  const NullScores null = null_scores(grounds, directions, scores.means, trials_of(campaign, rows, options), options);
+  const Scatters scatters(campaign, space, directions.blocks(), directions.measured());
+  const NullSets null =
+      null_sets(grounds, directions, scores.means, scatters, trials_of(campaign, rows, options), options);
   const VectorXd measured = scores.measured - null.mean;
   ScoreTest test;
+  test.dispersion = dispersion_test(scatters.kinds(), {null.scatters, null.scores.topRows(of_base)},
+                                    {scatters.of(directions.measured()), measured.head(of_base)});
   std::vector<Projection> projections;
   std::vector<std::size_t> effect_of;
   for (const TestedPlace& place : places_of(candidates, of_base, directions.size(), rules)) {
@@ -216,7 +220,7 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
     sharpen(projections.back().standard_errors(), place.members, candidates[place.members.front()], *effect);
     effect_of.push_back(static_cast<std::size_t>(effect - test.effects.begin()));
   }
-  correct(test, smallest_drawn(test.effects.size(), projections, effect_of, null.sets, options));
+  correct(test, smallest_drawn(test.effects.size(), projections, effect_of, null.scores, options));
   std::sort(test.effects.begin(), test.effects.end(), [](const EffectVerdict& a, const EffectVerdict& b) {
     return a.p_value != b.p_value ? a.p_value < b.p_value : more_significant(a.best, b.best);
   });

@@ -18,13 +18,43 @@ struct DispersionTest {
   bool tested = false;              ///< false: too few blocks
 };
 
-/// The places z of a quantity of a block less their mean over the blocks of its group, so that neither a group that is
-/// off as a whole nor a mean that is off counts as scatter. Their mean square is compared with that of data sets drawn
-/// from the model: one trial of each block stands in for what was measured. The share beyond P95 is that of z itself.
+/// The scatter of a data set, by kind of quantity: the mean square of the places z less their mean over the blocks of
+/// a group, so that neither a group that is off as a whole nor a mean that is off counts; then the share of the
+/// run-outs beyond P95, of z itself.
+class Scatters {
+ public:
+  /// @param blocks    that are used
+  /// @param measured  residuals of these blocks, components x blocks: kinds of which too few were measured are left out
+  Scatters(const Campaign& campaign, const ResidualSpace& space, const std::vector<std::size_t>& blocks,
+           const Eigen::MatrixXd& measured);
+
+  /// @param residuals  components x blocks. @return by kind: the variance, of a tail the share
+  Eigen::VectorXd of(const Eigen::MatrixXd& residuals) const;
+
+  /// A kind of quantity.
+  struct Kind {
+    std::string what;
+    std::vector<Eigen::Index> observables;  ///< that it sums up
+    bool tail = false;
+  };
+  const std::vector<Kind>& kinds() const { return kinds_; }
+
+ private:
+  std::vector<Kind> kinds_;
+  std::vector<std::size_t> groups_;  // by block
+};
+
+/// Scatters of data sets, with the scores by which a fit would move the ground.
+struct ScatteredSets {
+  Eigen::MatrixXd scatters;  ///< kinds x sets
+  Eigen::MatrixXd scores;    ///< free parameters x sets
+};
+
+/// Compares the measured scatter with that of data sets without an effect. Of each the part that goes with the scores
+/// of the free parameters is taken out (a regression over the drawn sets): another ground would explain it.
 ///
-/// @param runs  of which `space` was made
-/// @param rows  the blocks that are used
-DispersionTest dispersion_test(const Campaign& campaign, const ResidualSpace& space, const std::vector<BlockRuns>& runs,
-                               const std::vector<bool>& rows, int replicates, std::uint64_t seed);
+/// @param measured  one set
+DispersionTest dispersion_test(const std::vector<Scatters::Kind>& kinds, const ScatteredSets& drawn,
+                               const ScatteredSets& measured);
 
 }  // namespace talus

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "talus/fit/diagnose/candidates.hpp"
+#include "talus/fit/diagnose/dispersion.hpp"
 #include "talus/fit/diagnose/verdict.hpp"
 
 namespace talus {
@@ -28,6 +29,7 @@ struct EffectVerdict {
 struct ScoreTest {
   std::vector<EffectVerdict> effects;  ///< most significant first
   double p_value = 1.0;                ///< of the most significant one, corrected for all effects and places
+  DispersionTest dispersion;           ///< by the same simulated data sets
 };
 
 /// P-values among simulated data sets.

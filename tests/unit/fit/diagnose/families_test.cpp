@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "support/campaigns.hpp"
+#include "talus/fit/campaign/block_draws.hpp"
 #include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/dispersion.hpp"
 #include "talus/fit/diagnose/energy_component.hpp"
@@ -89,14 +91,30 @@ Campaign scattered(const Measured& m, double factor) {
   return c;
 }
 
-DispersionTest dispersion_of(const Campaign& c) {
-  const std::vector<bool> rows(c.blocks.size(), true);
-  return dispersion_test(c, ResidualSpace(c, measured().runs), measured().runs, rows, 1000, 1);
+/// The test of the dispersion of all blocks, with data sets of the model's own trials and no free parameter.
+DispersionTest dispersion_of(const Campaign& c, const std::vector<BlockRuns>& runs, int sets, std::uint64_t seed) {
+  const ResidualSpace space(c, runs);
+  std::vector<std::size_t> blocks(c.blocks.size());
+  std::iota(blocks.begin(), blocks.end(), 0U);
+  Eigen::MatrixXd measured(space.size(), std::ssize(blocks)), drawn = measured;
+  for (const std::size_t b : blocks) measured.col(static_cast<Eigen::Index>(b)) = space.of_measured(b);
+  const Scatters scatters(c, space, blocks, measured);
+  Eigen::MatrixXd drawn_scatters(std::ssize(scatters.kinds()), sets);
+  for (int set = 0; set < sets; ++set) {
+    for (const std::size_t b : blocks) {
+      const double share = draw_of_block(seed, c.blocks[b].stream, static_cast<std::uint32_t>(set), BlockDraw::Trial);
+      const auto trial = static_cast<std::size_t>(share * static_cast<double>(runs[b].trials));
+      drawn.col(static_cast<Eigen::Index>(b)) = space.of_own_trial(b, runs[b], trial);
+    }
+    drawn_scatters.col(set) = scatters.of(drawn);
+  }
+  return dispersion_test(scatters.kinds(), {drawn_scatters, Eigen::MatrixXd(0, sets)},
+                         {scatters.of(measured), Eigen::MatrixXd(0, 1)});
 }
 
 TEST(Dispersion, FindsAScatterThatIsTooLargeOrTooSmall) {
-  const DispersionTest wide = dispersion_of(scattered(measured(), 2.5));
-  const DispersionTest narrow = dispersion_of(scattered(measured(), 0.2));
+  const DispersionTest wide = dispersion_of(scattered(measured(), 2.5), measured().runs, 1000, 1);
+  const DispersionTest narrow = dispersion_of(scattered(measured(), 0.2), measured().runs, 1000, 1);
   EXPECT_LE(wide.p_value, 0.01);
   EXPECT_LE(narrow.p_value, 0.01);
   EXPECT_EQ(wide.rows[0].what, "runout");
@@ -113,8 +131,7 @@ TEST(Dispersion, OfBlocksThatAllWentFartherTheWholeTailIsBeyondP95) {
   c.blocks.resize(kBlocks);
   const std::vector<BlockRuns> runs(measured().runs.begin(), measured().runs.begin() + kBlocks);
   for (MeasuredBlock& b : c.blocks) b.stop = Eigen::Vector2d(b.x + 1000.0, b.y);
-  const DispersionTest test =
-      dispersion_test(c, ResidualSpace(c, runs), runs, std::vector<bool>(kBlocks, true), 500, 1);
+  const DispersionTest test = dispersion_of(c, runs, 500, 1);
   ASSERT_EQ(test.rows.back().what, "runout beyond P95");
   EXPECT_DOUBLE_EQ(test.rows.back().statistic, 1.0);
   EXPECT_DOUBLE_EQ(test.rows.back().p_value, 1.0 / 501.0);
@@ -129,13 +146,32 @@ TEST(Dispersion, HasItsSizeOnTheModelsOwnTrials) {
   constexpr int kSets = 60;
   for (std::uint64_t set = 0; set < kSets; ++set) {
     measure(c, model_of_slope(), 100 + set);
-    const std::vector<bool> rows(c.blocks.size(), true);
-    const double p = dispersion_test(c, ResidualSpace(c, measured().runs), measured().runs, rows, 100, set).p_value;
+    const double p = dispersion_of(c, measured().runs, 100, set).p_value;
     alarms += p <= 0.05;
     halves += p <= 0.5;
   }
   EXPECT_LE(alarms, kSets * 0.05 + 5.0 * std::sqrt(kSets * 0.05 * 0.95));
   EXPECT_NEAR(halves, kSets * 0.5, 5.0 * std::sqrt(kSets * 0.25));
+}
+
+/// By hand: the logarithm of the variance is the score of a free parameter plus a little noise. A variance of e^3 with
+/// a score of 3 is what another ground would give; with a score of 0 it is not.
+TEST(Dispersion, WhatAnotherGroundWouldExplainIsTakenOut) {
+  constexpr int kSets = 400;
+  ScatteredSets drawn{Eigen::MatrixXd(1, kSets), Eigen::MatrixXd(1, kSets)};
+  for (int set = 0; set < kSets; ++set) {
+    const double score = std::sin(1.0 + set), noise = 0.1 * std::cos(2.0 + 3.0 * set);
+    drawn.scores(0, set) = score;
+    drawn.scatters(0, set) = std::exp(score + noise);
+  }
+  const std::vector<Scatters::Kind> kinds{{"runout", {0}, false}};
+  const auto p_of = [&](double log_variance, double score) {
+    const Eigen::MatrixXd variance = Eigen::MatrixXd::Constant(1, 1, std::exp(log_variance));
+    return dispersion_test(kinds, drawn, {variance, Eigen::MatrixXd::Constant(1, 1, score)}).p_value;
+  };
+  EXPECT_GT(p_of(3.0, 3.0), 0.5);
+  EXPECT_DOUBLE_EQ(p_of(3.0, 0.0), 1.0 / 401.0);
+  EXPECT_DOUBLE_EQ(p_of(0.3, 0.0), 1.0 / 401.0) << "three times the noise, though scores of 0.3 are common";
 }
 
 TEST(Families, EveryEffectIsInOne) {
@@ -162,6 +198,7 @@ std::vector<FamilyTest> families_of(const Campaign& c, const std::vector<BlockRu
   for (int i = 1; i <= 19; ++i) drawn.push_back(0.05 * i);
   score.effects = {{"soft-ground", {{0}, {}, {}, 9.0, 0.001}, {}, 0.05, drawn},
                    {"air-drag", {{1}, {}, {}, 1.0, 0.5}, {}, 0.5, drawn}};
+  score.dispersion = dispersion_of(c, runs, 200, 1);
   const ResidualSpace space(c, runs);
   FamilyOptions how;
   how.replicates = 200;
