@@ -44,7 +44,7 @@ Eigen::VectorXd FitProblem::start() const {
       if (known[own.number]) continue;  // shared: the first site that has it decides
       known[own.number] = true;
       const Parameter& p = free[own.number];
-      z[static_cast<Eigen::Index>(own.number)] = std::clamp(p.z(own.get(site.start)), p.z(p.lower), p.z(p.upper));
+      z[static_cast<Eigen::Index>(own.number)] = p.within(p.z(own.get(site.start)));
     }
   return z;
 }

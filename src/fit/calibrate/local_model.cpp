@@ -99,8 +99,7 @@ std::vector<Eigen::VectorXd> LocalModel::design(const FitProblem& problem, std::
   for (int k = 0; k < count; ++k) {
     Eigen::VectorXd z =
         centre + root * normal_draws(seed, NormalDraw::Place, first + static_cast<std::uint32_t>(k), centre.size());
-    for (Eigen::Index i = 0; i < z.size(); ++i)
-      z[i] = std::clamp(z[i], problem.free[i].z(problem.free[i].lower), problem.free[i].z(problem.free[i].upper));
+    for (Eigen::Index i = 0; i < z.size(); ++i) z[i] = problem.free[static_cast<std::size_t>(i)].within(z[i]);
     places.push_back(std::move(z));
   }
   return places;

@@ -25,6 +25,10 @@ double Parameter::z(double value) const {
   return value > 0.0 ? natural_log(value / centre) / sd : -std::numeric_limits<double>::infinity();
 }
 
+double Parameter::within(double place) const {
+  return std::clamp(place, z(lower), z(upper));
+}
+
 std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& start,
                                          std::span<const std::string> keys, const std::vector<bool>& zones) {
   static const std::vector<std::string> known{"theta_scale", "psi_scale", "En50", "Et50", "phi"};

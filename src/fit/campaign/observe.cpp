@@ -105,24 +105,19 @@ class Instrument {
   /// On a straight piece the distance from a place is largest at one of the ends. So a sample's distance is first
   /// reached on the first piece that ends beyond it.
   void samples(const Errors& errors, const MeasuredBlock& block, const Path& path, std::uint32_t trial,
-               BlockRuns& runs) {
-    if (block.samples.empty()) return;
-    order_.resize(block.samples.size());
-    for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = i;
-    std::sort(order_.begin(), order_.end(),
-              [&](std::size_t a, std::size_t b) { return block.samples[a].distance < block.samples[b].distance; });
+               BlockRuns& runs) const {
     const Eigen::Vector2d origin(block.x, block.y);
-    auto next = order_.begin();
+    std::size_t next = 0;
     for (std::size_t i = 1; i < path.vertices.size(); ++i) {
       const Vertex &from = path.vertices[i - 1], &to = path.vertices[i];
       const Eigen::Vector2d a = from.motion.position.head<2>() - origin, b = to.motion.position.head<2>() - origin;
-      for (; next != order_.end() && b.norm() >= block.samples[*next].distance; ++next) {
+      for (; next < block.samples.size() && b.norm() >= block.samples[next].distance; ++next) {
         const Eigen::Vector2d way = b - a;
-        const double r = block.samples[*next].distance, length = way.squaredNorm(), along = way.dot(a);
+        const double r = block.samples[next].distance, length = way.squaredNorm(), along = way.dot(a);
         const double inside = r * r - a.squaredNorm();  // <= 0: reached at the start of the piece
         const double share =
             inside > 0.0 ? std::min(1.0, (std::sqrt(along * along + length * inside) - along) / length) : 0.0;
-        record(errors, *next, motion_between(from, to, share), runs.samples[*next], trial);
+        record(errors, next, motion_between(from, to, share), runs.samples[next], trial);
       }
     }
   }
@@ -155,7 +150,6 @@ class Instrument {
   const bool bounded_;  // what does not end counts as cut short
   std::vector<std::uint32_t> screen_streams_;
   std::vector<Crossing> crossings_;
-  std::vector<std::size_t> order_;
   std::vector<char> hit_;  // by zone, of the path
 };
 

@@ -77,15 +77,7 @@ class DiagnosisLoop {
   }
 
   ScoreTestOptions test_options() {
-    ScoreTestOptions how;
-    how.trials = options_.trials.test;
-    how.seed = options_.seed;
-    how.threads = options_.threads;
-    how.replicates = options_.replicates(kFamilies);
-    how.rules = rules_;
-    how.proceed = [this] { return proceeds(); };
-    how.traced = &traced_;
-    return how;
+    return score_test_options(options_, kFamilies, [this] { return proceeds(); });
   }
 
   /// Tests at the model that `settled_` then is.

@@ -26,6 +26,19 @@ FitOptions last_fit_options(FitOptions how, const DiagnosisRules& rules) {
   return how;
 }
 
+ScoreTestOptions score_test_options(const DiagnoseOptions& options, std::size_t families,
+                                    std::function<bool()> proceed) {
+  ScoreTestOptions how;
+  how.trials = options.trials.test;
+  how.seed = options.seed;
+  how.threads = options.threads;
+  how.replicates = options.replicates(families);
+  how.rules = options.rules;
+  how.proceed = std::move(proceed);
+  how.traced = options.traced;
+  return how;
+}
+
 std::uint32_t first_trial_of(const DiagnoseOptions& options, std::uint32_t round) {
   const DiagnosisRules& rules = options.rules;
   return kUnseen + round * (1 + 2 * rules.fold_orders + rules.confirming) * options.trials.compare;

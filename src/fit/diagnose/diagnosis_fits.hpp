@@ -4,6 +4,7 @@
 #include "fit/calibrate/local_model.hpp"
 #include "talus/fit/calibrate/calibrate.hpp"
 #include "talus/fit/diagnose/diagnosis.hpp"
+#include "talus/fit/diagnose/score_test.hpp"
 
 namespace talus {
 
@@ -14,6 +15,12 @@ FitOptions search_options(const DiagnoseOptions& options, const std::function<bo
 
 /// The fit of a chosen model from where it is: a search, then rounds until one gains nothing.
 FitOptions last_fit_options(FitOptions how, const DiagnosisRules& rules);
+
+/// The score test with the trials of the diagnosis.
+///
+/// @param families  number of families over which p is corrected
+ScoreTestOptions score_test_options(const DiagnoseOptions& options, std::size_t families,
+                                    std::function<bool()> proceed);
 
 /// Number of the first trial of a round. No two rounds share a trial: each has those that compare fits once for the
 /// choice, once for each order of its cross-validation, as often to confirm that, and `confirming` times to confirm the

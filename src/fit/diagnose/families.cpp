@@ -59,28 +59,6 @@ FamilyTest family_with_members(const char* name, std::vector<std::string> member
   return family;
 }
 
-FamilyTest block_property(std::span<const BlockNumbers> sites, const FamilyOptions& options) {
-  FamilyTest family = family_with_members(kProperty, {"block-shape", "block-mass"});
-  const PropertyTest test = property_test(sites, rules_of(options), options.seed);
-  family.may_name = test.rocks >= options.rules.fewest_rocks;
-  if (!family.may_name) family.note = rocks_word(test.rocks) + ": a property of the block cannot be named from them";
-  if (!test.tested) {
-    if (family.may_name)
-      family.note = test.blocks < options.rules.fewest_blocks ? "ten blocks and more are needed"
-                                                              : "two rocks that can be compared are needed";
-    return family;
-  }
-  const PermutationTest& permuted = test.regression.permuted;
-  family.p_value = permuted.p_value;
-  family.note += (family.may_name ? "" : "; ") + permutations_note(permuted, units_word(test));
-  refuse_to_name(family, permuted, options.level);
-  for (std::size_t i = 0; i < test.slopes.size(); ++i)
-    if (!std::isnan(test.slopes[i].correlation))
-      family.parts.push_back(
-          {test.names[i], "partial correlation", test.slopes[i].correlation, test.slopes[i].p_value});
-  return family;
-}
-
 FamilyTest day(const FamilyInput& in, const std::vector<double>& energy, const FamilyOptions& options) {
   FamilyTest family = family_with_members(kDay, {"wet-ground"});
   const DayTest test = day_test(in.campaign, energy, rules_of(options), options.seed);
@@ -150,7 +128,7 @@ std::vector<FamilyTest> test_families(const FamilyInput& input, const FamilyOpti
   const std::vector<double> energy = energy_by_block(input.space, input.runs, input.rows);
   const std::vector<BlockNumbers> site{{input.campaign, energy}};
   std::vector<FamilyTest> families{
-      block_property(site, options), by_score_test(kPlace, "measured values are needed", input),
+      test_block_property(site, options), by_score_test(kPlace, "measured values are needed", input),
       day(input, energy, options),
       by_score_test(kInstrument, "a screen that five blocks crossed, or samples, are needed", input),
       dispersion(input.score_test.dispersion, options)};
@@ -170,7 +148,25 @@ std::vector<double> energy_by_block(const ResidualSpace& space, const std::vecto
 }
 
 FamilyTest test_block_property(std::span<const BlockNumbers> sites, const FamilyOptions& options) {
-  return block_property(sites, options);
+  FamilyTest family = family_with_members(kProperty, {"block-shape", "block-mass"});
+  const PropertyTest test = property_test(sites, rules_of(options), options.seed);
+  family.may_name = test.rocks >= options.rules.fewest_rocks;
+  if (!family.may_name) family.note = rocks_word(test.rocks) + ": a property of the block cannot be named from them";
+  if (!test.tested) {
+    if (family.may_name)
+      family.note = test.blocks < options.rules.fewest_blocks ? "ten blocks and more are needed"
+                                                              : "two rocks that can be compared are needed";
+    return family;
+  }
+  const PermutationTest& permuted = test.regression.permuted;
+  family.p_value = permuted.p_value;
+  family.note += (family.may_name ? "" : "; ") + permutations_note(permuted, units_word(test));
+  refuse_to_name(family, permuted, options.level);
+  for (std::size_t i = 0; i < test.slopes.size(); ++i)
+    if (!std::isnan(test.slopes[i].correlation))
+      family.parts.push_back(
+          {test.names[i], "partial correlation", test.slopes[i].correlation, test.slopes[i].p_value});
+  return family;
 }
 
 void correct(std::span<FamilyTest* const> families) {

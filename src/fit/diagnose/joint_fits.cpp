@@ -176,7 +176,7 @@ Evaluation JointFits::best_start(const JointModel& base, const SiteCandidates& c
         const Parameter& p = parameters.free[static_cast<std::size_t>(ground + i)];
         const double z =
             options_.rules.noticed * amount * std::clamp(estimate[i], p.lower >= p.centre ? 0.3 : -2.0, 4.0);
-        effect[i] = std::clamp(z, p.z(p.lower), p.z(p.upper));
+        effect[i] = p.within(z);
       }
       Evaluation here = evaluate(problem, how, extended(base.z, effect), {how.trials});
       if (here.objective < best.objective) best = std::move(here);

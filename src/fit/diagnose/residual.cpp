@@ -4,6 +4,7 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "talus/fit/campaign/block_draws.hpp"
 #include "talus/fit/score/coverage.hpp"
@@ -79,14 +80,12 @@ Eigen::Vector2d forward_of(const MeasuredBlock& block, const BlockRuns& runs) {
   return sum.norm() > 0.0 ? Eigen::Vector2d(sum.normalized()) : Eigen::Vector2d::UnitX();
 }
 
-/// The samples of a block that belong to its nearer or farther half.
+/// Numbers of the samples of a block's nearer or farther half.
 std::vector<std::size_t> half_of(const MeasuredBlock& block, bool late) {
-  std::vector<std::size_t> order(block.samples.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return block.samples[a].distance < block.samples[b].distance; });
-  const auto middle = order.begin() + static_cast<std::ptrdiff_t>((order.size() + 1) / 2);
-  return late ? std::vector<std::size_t>(middle, order.end()) : std::vector<std::size_t>(order.begin(), middle);
+  const std::size_t count = block.samples.size(), middle = (count + 1) / 2;
+  std::vector<std::size_t> half(late ? count - middle : middle);
+  std::iota(half.begin(), half.end(), late ? middle : 0);
+  return half;
 }
 
 }  // namespace

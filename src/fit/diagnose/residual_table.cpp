@@ -163,15 +163,6 @@ void add_leaving(std::vector<ResidualRow>& table, const Campaign& campaign, cons
       {kLeaving, "number", static_cast<double>(test.missing) - test.expected, test.p_value, 1.0, test.blocks});
 }
 
-void correct(std::vector<ResidualRow>& table) {
-  std::sort(table.begin(), table.end(),
-            [](const ResidualRow& a, const ResidualRow& b) { return a.p_value < b.p_value; });
-  std::vector<double> p;
-  for (const ResidualRow& row : table) p.push_back(row.p_value);
-  const std::vector<double> corrected = holm(p);
-  for (std::size_t i = 0; i < table.size(); ++i) table[i].corrected = corrected[i];
-}
-
 }  // namespace
 
 const std::vector<Property>& properties() {
@@ -243,7 +234,9 @@ std::vector<ResidualRow> residual_table(const Campaign& campaign, const Residual
     }
   }
   add_leaving(table, campaign, runs, rows);
-  correct(table);
+  std::sort(table.begin(), table.end(),
+            [](const ResidualRow& a, const ResidualRow& b) { return a.p_value < b.p_value; });
+  correct_rows(table);
   return table;
 }
 

@@ -173,10 +173,8 @@ SettledModel settled_model(const Campaign& campaign, const TestedModel& fitted, 
       move *= 0.5;  // too far: the signatures are those of small changes
     }
     if (step == rules.settling || best.statistic < rules.settled * static_cast<double>(here.z.size())) break;
-    for (Index i = 0; i < here.z.size(); ++i) {
-      const Parameter& p = fitted.free[static_cast<std::size_t>(i)];
-      here.z[i] = std::clamp(best.z[i] + move[i], p.z(p.lower), p.z(p.upper));
-    }
+    for (Index i = 0; i < here.z.size(); ++i)
+      here.z[i] = fitted.free[static_cast<std::size_t>(i)].within(best.z[i] + move[i]);
     if (here.z == best.z) break;
     here.model = model_at(fitted.model, fitted.free, here.z);
     here.runs = simulated(here.model);

@@ -80,8 +80,8 @@ class SitesLoop {
     return !asked_.proceed || asked_.proceed(std::max(progress_, ground_));
   }
 
-  /// For the correction over the pooled family and the others of each site.
-  int replicates() const { return asked_.replicates(1 + (kFamilies - 1) * sites_.size()); }
+  /// Number of families over which p is corrected: the pooled one and the others of each site.
+  std::size_t families() const { return 1 + (kFamilies - 1) * sites_.size(); }
 
   /// The ground of a site, with the tests of all its families.
   SiteDiagnosis of_site(std::size_t site, const Model& start) {
@@ -95,13 +95,7 @@ class SitesLoop {
     out.base = fits.begin_round(fits.fit_ground(start, brief_));
     SiteTests tests;
     tests.candidates = candidates_of(campaign, out.base.model, out.base.runs, {}, rules_);
-    ScoreTestOptions how;
-    how.trials = own.trials.test;
-    how.seed = own.seed;
-    how.threads = own.threads;
-    how.replicates = replicates();
-    how.rules = rules_;
-    how.proceed = [this] { return proceeds(1.0); };
+    const ScoreTestOptions how = score_test_options(own, families(), [this] { return proceeds(1.0); });
     tests.score_test =
         settled_test(campaign, {out.base.model, out.base.free, out.base.z, out.base.runs}, tests.candidates, rows, how,
                      [&](const Model& model) { return fits.observed_in(campaign, model); })
@@ -134,8 +128,8 @@ class SitesLoop {
           energy_by_block(ResidualSpace(*sites_[i].campaign, *runs[i], rules_), *runs[i], fits_.rows()[i]));
     std::vector<BlockNumbers> numbers;
     for (std::size_t i = 0; i < sites_.size(); ++i) numbers.push_back({*sites_[i].campaign, energies[i]});
-    FamilyTest family =
-        test_block_property(numbers, {replicates(), options_.seed, rules_, options_.level_of_round(found.size())});
+    FamilyTest family = test_block_property(
+        numbers, {options_.replicates(families()), options_.seed, rules_, options_.level_of_round(found.size())});
     std::erase_if(family.members, [&](const std::string& m) { return std::ranges::find(found, m) != found.end(); });
     return family;
   }

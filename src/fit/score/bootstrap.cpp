@@ -25,13 +25,6 @@ std::vector<double> weighted_groups(const Score& score, std::span<const double> 
   return sum;
 }
 
-double total_of(const Score& score, std::span<const double> groups) {
-  double sum = 0.0, weights = 0.0;
-  for (std::size_t g = 0; g < groups.size(); ++g)
-    if (!std::isnan(groups[g])) sum += score.groups[g].weight * groups[g], weights += score.groups[g].weight;
-  return weights > 0.0 ? sum / weights : kNotGiven;
-}
-
 Interval middle(std::vector<double> values) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
   if (values.empty()) return {};
@@ -42,7 +35,8 @@ Interval middle(std::vector<double> values) {
 }  // namespace
 
 double weighted_total(const Score& score, std::span<const double> weight) {
-  return total_of(score, weighted_groups(score, weight));
+  const std::vector<double> means = weighted_groups(score, weight);
+  return mean_over(score.groups, [&](std::size_t g) { return means[g]; });
 }
 
 std::vector<std::uint32_t> bootstrap_streams(const Campaign& campaign, const std::string& site) {

@@ -180,13 +180,6 @@ ClassOfBlocks blocks_of(const Campaign& campaign, std::span<const BlockRuns> run
   return blocks;
 }
 
-void correct(std::vector<PatternDistance>& patterns) {
-  std::vector<double> p;
-  for (const PatternDistance& pattern : patterns) p.push_back(pattern.p_value);
-  const std::vector<double> corrected = holm(p);
-  for (std::size_t i = 0; i < patterns.size(); ++i) patterns[i].corrected = corrected[i];
-}
-
 }  // namespace
 
 PatternDistance pattern_distance(std::span<const Eigen::Vector2d> mapped, std::span<const Places> simulated) {
@@ -235,7 +228,7 @@ DepositCheck check_deposits(const Campaign& campaign, std::span<const BlockRuns>
   const std::size_t patterns = std::max(kFewestPatterns, kPatternsOfClass * classes.size());
   for (std::size_t i = 0; i < classes.size(); ++i)
     check.patterns[i].p_value = p_value_of(check.patterns[i].distance, classes[i], patterns);
-  correct(check.patterns);
+  correct_rows(check.patterns);
   return check;
 }
 

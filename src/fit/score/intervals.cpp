@@ -88,10 +88,7 @@ class Sums {
     return left > 0.0 ? (whole_[group] - sum_[cell]) / left : all;
   }
   double total(std::size_t without) const {
-    double sum = 0.0, weights = 0.0;
-    for (std::size_t g = 0; g < groups_; ++g)
-      sum += score_.groups[g].weight * group(g, without), weights += score_.groups[g].weight;
-    return weights > 0.0 ? sum / weights : kNotGiven;
+    return mean_over(score_.groups, [&](std::size_t g) { return group(g, without); });
   }
 
  private:

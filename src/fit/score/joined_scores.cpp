@@ -8,13 +8,10 @@ Score joined_scores(std::span<const SiteScore> scores) {
   if (scores.size() == 1 && scores.front().site.empty()) return scores.front().score;
   Score all;
   std::size_t blocks = 0;
-  double sum = 0.0, weights = 0.0;
   for (const SiteScore& one : scores) {
     const auto groups = static_cast<std::uint32_t>(all.groups.size());
     for (GroupScore group : one.score.groups) {
       if (!one.site.empty()) group.name = one.site + ": " + group.name;
-      sum += group.weight * group.score;
-      weights += group.weight;
       all.groups.push_back(std::move(group));
     }
     for (RowScore row : one.score.rows) {
@@ -25,7 +22,7 @@ Score joined_scores(std::span<const SiteScore> scores) {
     blocks += one.blocks;
     all.cut_short = std::max(all.cut_short, one.score.cut_short);  // of the worst site
   }
-  if (weights > 0.0) all.total = sum / weights;
+  all.total = mean_over(all.groups);
   return all;
 }
 

@@ -250,32 +250,24 @@ Score score_of_climatology(const Campaign& campaign, const std::vector<bool>& as
 Score of_large_groups(const Score& score, std::uint32_t fewest) {
   Score large;
   std::vector<std::uint32_t> number(score.groups.size(), 0);  // of each group among those that are left
-  double sum = 0.0, weights = 0.0;
   for (std::size_t g = 0; g < score.groups.size(); ++g) {
     const GroupScore& group = score.groups[g];
     if (group.rows < fewest) continue;
     number[g] = static_cast<std::uint32_t>(large.groups.size());
     large.groups.push_back(group);
-    sum += group.weight * group.score;
-    weights += group.weight;
   }
   for (RowScore row : score.rows) {
     if (score.groups[row.group].rows < fewest) continue;
     row.group = number[row.group];
     large.rows.push_back(row);
   }
-  if (!large.groups.empty()) large.total = sum / weights;
+  large.total = mean_over(large.groups);
   return large;
 }
 
 Score weigh_groups(Score score) {
-  double sum = 0.0, weights = 0.0;
-  for (GroupScore& group : score.groups) {
-    group.weight = group.rows / (group.rows + kHalfWeight);
-    sum += group.weight * group.score;
-    weights += group.weight;
-  }
-  if (!score.groups.empty()) score.total = sum / weights;
+  for (GroupScore& group : score.groups) group.weight = group.rows / (group.rows + kHalfWeight);
+  score.total = mean_over(score.groups);
   return score;
 }
 

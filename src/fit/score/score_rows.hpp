@@ -42,9 +42,8 @@ class ScoreRows {
 
   /// The mean over the groups, and the share of the trials of the asked blocks that did not end in a search.
   Score result(const std::vector<bool>& ask) {
-    double sum = 0.0, cut = 0.0, blocks = 0.0;
-    for (const GroupScore& group : score_.groups) sum += group.score;
-    if (!score_.groups.empty()) score_.total = sum / static_cast<double>(score_.groups.size());
+    double cut = 0.0, blocks = 0.0;
+    score_.total = mean_over(score_.groups);
     for (std::uint32_t b = 0; b < ask.size(); ++b)
       if (ask[b]) cut += cut_short(b), blocks += 1.0;
     if (blocks > 0.0) score_.cut_short = cut / blocks;

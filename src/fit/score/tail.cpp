@@ -30,9 +30,28 @@ double median_of(std::vector<double> values) {
   return quantile(values, 0.5);
 }
 
-/// @param runs  empty: the climatology is scored
-Score scored(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
-             std::span<const std::uint32_t> folds) {
+}  // namespace
+
+double runout_of(const Campaign& campaign, const MeasuredBlock& block) {
+  if (campaign.deposits != nullptr) return run_out(campaign, *block.stop).distance;
+  return block.stop ? std::hypot(block.stop->x() - block.x, block.stop->y() - block.y) : kNotGiven;
+}
+
+std::vector<double> runouts_of(const Campaign& campaign, const MeasuredBlock& block, const BlockRuns& runs) {
+  std::vector<double> values;
+  values.reserve(runs.trials);
+  for (std::uint32_t t = 0; t < runs.trials; ++t)
+    values.push_back(campaign.deposits == nullptr ? std::hypot(runs.x[t] - block.x, runs.y[t] - block.y)
+                                                  : run_out(campaign, {runs.x[t], runs.y[t]}).distance);
+  return values;
+}
+
+double tail_begin(const Campaign& campaign) {
+  return median_of(fitting_runouts(campaign).values);
+}
+
+Score tail_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+                 std::span<const std::uint32_t> folds) {
   const FittingValues<double> fitting = fitting_runouts(campaign);
   if (fitting.size() < kFewestRows) return {};
   const double begin = median_of(fitting.values);
@@ -68,34 +87,9 @@ Score scored(const Campaign& campaign, std::span<const BlockRuns> runs, const st
   return out;
 }
 
-}  // namespace
-
-double runout_of(const Campaign& campaign, const MeasuredBlock& block) {
-  if (campaign.deposits != nullptr) return run_out(campaign, *block.stop).distance;
-  return block.stop ? std::hypot(block.stop->x() - block.x, block.stop->y() - block.y) : kNotGiven;
-}
-
-std::vector<double> runouts_of(const Campaign& campaign, const MeasuredBlock& block, const BlockRuns& runs) {
-  std::vector<double> values;
-  values.reserve(runs.trials);
-  for (std::uint32_t t = 0; t < runs.trials; ++t)
-    values.push_back(campaign.deposits == nullptr ? std::hypot(runs.x[t] - block.x, runs.y[t] - block.y)
-                                                  : run_out(campaign, {runs.x[t], runs.y[t]}).distance);
-  return values;
-}
-
-double tail_begin(const Campaign& campaign) {
-  return median_of(fitting_runouts(campaign).values);
-}
-
-Score tail_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
-                 std::span<const std::uint32_t> folds) {
-  return scored(campaign, runs, ask, folds);
-}
-
 Score tail_score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask,
                                 std::span<const std::uint32_t> folds) {
-  return scored(campaign, {}, ask, folds);
+  return tail_score(campaign, {}, ask, folds);
 }
 
 }  // namespace talus

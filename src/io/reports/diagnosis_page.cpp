@@ -22,8 +22,7 @@ constexpr std::size_t kPlots = 6;
 std::string reduction_text(const Reduction& r) {
   if (std::isnan(r.share)) return "-";
   if (r.share == 0.0 && r.interval.low == 0.0 && r.interval.high == 0.0) return "0: it was fitted to no effect";
-  return with_decimals(100.0 * r.share, 1) + " % (" + with_decimals(100.0 * r.interval.low, 1) + " to " +
-         with_decimals(100.0 * r.interval.high, 1) + ")";
+  return with_decimals(100.0 * r.share, 1) + " % (" + interval_text(r.interval, 100.0, 1) + ")";
 }
 
 /// The value of a property of a block, named by a row of the residual table; the number of the block if there is none
@@ -168,10 +167,6 @@ Markup spread_html(const DiagnosisRecord& record) {
   return html;
 }
 
-std::string unit_text(const Parameter& parameter) {
-  return parameter.unit.empty() || parameter.unit == "1" ? "" : " " + parameter.unit;
-}
-
 Markup candidates_table(const DiagnosisRound& round, const std::vector<HoldoutError>& holdout) {
   Markup html =
       "<table><tr><th>effect</th><th>where</th><th>parameters</th><th>p of the score test</th><th>objective lower "
@@ -181,8 +176,8 @@ Markup candidates_table(const DiagnosisRound& round, const std::vector<HoldoutEr
     const FittedCandidate& c = round.candidates[i];
     Markup numbers;
     for (std::size_t k = 0; k < c.parameters.size(); ++k)
-      numbers +=
-          Markup() + c.parameters[k].key + " = " + with_digits(c.values[k], 3) + unit_text(c.parameters[k]) + "<br>";
+      numbers += Markup() + c.parameters[k].key + " = " + with_digits(c.values[k], 3) +
+                 unit_text(c.parameters[k].unit) + "<br>";
     const HoldoutError& e = holdout[i];
     html += "<tr><td>"_html + c.effect + "</td><td>" + c.where + "</td><td>" + numbers + "</td><td>" +
             with_decimals(c.p_value, 4) + "</td><td>" + gain_text(c.gain, c.gain_interval) + "</td><td>" +
@@ -208,9 +203,9 @@ Markup ground_html(const Diagnosis& d) {
   for (std::size_t i = 0; i < free.size(); ++i) {
     const Parameter& p = free[i];
     const auto k = static_cast<Eigen::Index>(i);
-    const auto at = [&](double z) { return with_digits(p.value(std::clamp(z, p.z(p.lower), p.z(p.upper))), 3); };
-    html += "<tr><td class='b'>"_html + p.key + "</td><td>" + with_digits(p.centre, 3) + unit_text(p) + "</td><td>" +
-            at(d.base.z[k]) + "</td><td>";
+    const auto at = [&](double z) { return with_digits(p.value(p.within(z)), 3); };
+    html += "<tr><td class='b'>"_html + p.key + "</td><td>" + with_digits(p.centre, 3) + unit_text(p.unit) +
+            "</td><td>" + at(d.base.z[k]) + "</td><td>";
     if (with_range) {
       const double reach = std::sqrt(d.base.spread(k, k));
       html += at(d.base.z[k] - reach) + " to " + at(d.base.z[k] + reach);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "evidence.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
@@ -39,8 +40,7 @@ std::string with_values(const DiagnosisRound& round) {
   const FittedCandidate& c = round.candidates.front();
   for (std::size_t i = 0; i < c.parameters.size(); ++i) {
     const Parameter& p = c.parameters[i];
-    values.push_back(p.key.substr(p.key.rfind('.') + 1) + " " + with_digits(c.values[i], 2) +
-                     (p.unit.empty() || p.unit == "1" ? "" : " " + p.unit));
+    values.push_back(p.key.substr(p.key.rfind('.') + 1) + " " + with_digits(c.values[i], 2) + unit_text(p.unit));
   }
   return values.empty() ? "" : ": " + in_a_sentence(values);
 }
@@ -82,8 +82,7 @@ std::string gain_in_doubt(const DiagnosisRound& round) {
   if (!(gain.low <= 0.0)) return "";
   return " Blocks left out of its fit do not show the gain of " + round.effect +
          " for sure: it lowers the objective by " + with_decimals(chosen.unseen_gain(), 3) +
-         " (95 %: " + with_decimals(gain.low, 3) + " to " + with_decimals(gain.high, 3) +
-         ") after the price of its place.";
+         " (95 %: " + interval_text(gain, 1.0, 3) + ") after the price of its place.";
 }
 
 /// Names the families that are significant in the first round, at its level, and the row of the residual table that is

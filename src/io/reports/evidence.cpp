@@ -109,14 +109,25 @@ std::string tail_before_after(const BeforeAfter& e) {
          tenths_of_percent(e.tail_reduction.interval.high) + " %); then " + tail_against_climatology(e.after) + ".";
 }
 
+std::string interval_text(const Interval& interval, double unit, int decimals) {
+  return with_decimals(unit * interval.low, decimals) + " to " + with_decimals(unit * interval.high, decimals);
+}
+
+std::string reduction_in_words(const Reduction& reduction) {
+  return with_decimals(100.0 * reduction.share, 1) + " % (95 %: " + interval_text(reduction.interval, 100.0, 1) + " %)";
+}
+
+std::string unit_text(const std::string& unit) {
+  return unit.empty() || unit == "1" ? "" : " " + unit;
+}
+
 std::string score_text(double score) {
   return std::isnan(score) ? "-" : with_decimals(score, 3);
 }
 
 std::string gain_text(double gain, const Interval& interval) {
   if (std::isnan(gain)) return "";
-  return with_decimals(gain, 3) + " (" + with_decimals(interval.low, 3) + " to " + with_decimals(interval.high, 3) +
-         ")";
+  return with_decimals(gain, 3) + " (" + interval_text(interval, 1.0, 3) + ")";
 }
 
 std::string judgement_markdown(const BeforeAfter& e, const std::string& ranks) {

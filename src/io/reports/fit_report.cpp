@@ -165,8 +165,7 @@ std::string gain_of_fit(const BeforeAfter& e) {
   if (hardly_simulated(e.before.score) || hardly_simulated(e.after.score))
     return "an amount that cannot be told: start or fit hardly simulates what was measured";
   return with_decimals(100.0 * e.reduction.share, 1) + " % (95 % interval over the " +
-         (e.clusters.are_groups() ? "groups" : "blocks") + ": " + with_decimals(100.0 * e.reduction.interval.low, 1) +
-         " to " + with_decimals(100.0 * e.reduction.interval.high, 1) + " %)";
+         (e.clusters.are_groups() ? "groups" : "blocks") + ": " + interval_text(e.reduction.interval, 100.0, 1) + " %)";
 }
 
 std::string calibration_json(const Calibration& c) {

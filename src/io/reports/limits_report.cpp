@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "evidence.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/reports/diagnosis_report.hpp"
 
@@ -11,7 +12,7 @@ namespace {
 /// @param none  what stands for an amount that there is not
 std::string amount_text(const DetectionLimit& limit, double amount, const char* none = "not to be seen") {
   if (std::isnan(amount)) return none;
-  return with_digits(amount, 2) + (limit.unit.empty() || limit.unit == "1" ? "" : " " + limit.unit);
+  return with_digits(amount, 2) + unit_text(limit.unit);
 }
 
 }  // namespace

@@ -11,10 +11,6 @@ namespace {
 
 constexpr const char* kOutOfFold = "out-of-fold";
 
-std::string interval_text(const Interval& interval, double unit, int decimals) {
-  return with_decimals(unit * interval.low, decimals) + " to " + with_decimals(unit * interval.high, decimals);
-}
-
 /// The p-values of the base fits, in words.
 std::string p_text(const Interval& range) {
   if (std::isnan(range.low)) return "-";

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include "io/results/acting_record.hpp"
 #include "io/results/recorded_run.hpp"
@@ -214,12 +213,16 @@ std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder
   });
 }
 
-std::string day_of(const std::filesystem::path& file) {
-  struct stat status {};
+std::string day_text(std::time_t time) {
   std::tm parts{};
   std::array<char, 16> text{};
-  if (stat(file.c_str(), &status) != 0 || gmtime_r(&status.st_mtime, &parts) == nullptr) return "";
+  if (gmtime_r(&time, &parts) == nullptr) return "";
   return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d", &parts)};
+}
+
+std::string day_of(const std::filesystem::path& file) {
+  struct stat status {};
+  return stat(file.c_str(), &status) != 0 ? "" : day_text(status.st_mtime);
 }
 
 std::vector<std::string> texts_of(const Json& json, const char* key) {

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <ctime>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -94,6 +96,8 @@ std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder
 /// The warnings of the run and of its hazard maps, each once.
 std::vector<std::string> all_warnings(const RunFacts& run, const std::optional<HazardFacts>& hazard);
 
+/// A day (UTC): "2026-11-23"; empty if there is none.
+std::string day_text(std::time_t time);
 /// Day on which a file was written last (UTC): "2026-11-23"; empty if it is not known.
 std::string day_of(const std::filesystem::path& file);
 

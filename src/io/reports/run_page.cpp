@@ -186,15 +186,6 @@ std::time_t time_of_page() {
   return static_cast<std::time_t>(seconds);
 }
 
-/// The day of the page (UTC).
-std::string today() {
-  const std::time_t now = time_of_page();
-  std::tm parts{};
-  std::array<char, 16> text{};
-  if (gmtime_r(&now, &parts) == nullptr) return "";
-  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d", &parts)};
-}
-
 }  // namespace
 
 std::string run_page(const RunPageRequest& request) {
@@ -203,10 +194,10 @@ std::string run_page(const RunPageRequest& request) {
   const MapImprint imprint{report.run.grid.crs, report.run.written, attribution};
   const fs::path folder = fs::absolute(request.folder).lexically_normal();
   const std::string name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
-  const PageFrame frame{
-      "report", request.title.empty() ? "Rock fall: " + name : request.title,
-      "page of " + today() + ", run.json written on " + report.run.written + ", plan " + report.run.plan,
-      report.sheet.maps.empty() ? Markup() : run_page_script()};
+  const PageFrame frame{"report", request.title.empty() ? "Rock fall: " + name : request.title,
+                        "page of " + day_text(time_of_page()) + ", run.json written on " + report.run.written +
+                            ", plan " + report.run.plan,
+                        report.sheet.maps.empty() ? Markup() : run_page_script()};
   const Markup places = report.profile ? profile_html(*report.profile) : maps_html(report, imprint);
   const Markup body = run_html(report, attribution) + places + standing_html(report.run) +
                       screens_html(report.screens) + barriers_html(report.barriers) +

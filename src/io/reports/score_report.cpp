@@ -5,6 +5,7 @@
 
 #include "coverage_report.hpp"
 #include "deposit_report.hpp"
+#include "evidence.hpp"
 #include "talus/base/text.hpp"
 #include "talus/fit/diagnose/diagnosis_rules.hpp"
 
@@ -87,9 +88,7 @@ constexpr const char* kWereFitted = "; these rows were fitted, which lowers thei
 
 /// "skill 9.3 % (95 %: 1.2 to 17.4 %)".
 std::string skill_text(const Reduction& skill) {
-  return "skill " + with_decimals(100.0 * skill.share, 1) +
-         " % (95 %: " + with_decimals(100.0 * skill.interval.low, 1) + " to " +
-         with_decimals(100.0 * skill.interval.high, 1) + " %)";
+  return "skill " + reduction_in_words(skill);
 }
 
 /// The climatology with the smaller error, of the places or by release: a model has skill if it beats this one.

@@ -153,8 +153,7 @@ Json errors_json(const SiteEvidence& evidence) {
 std::string change_text(const ErrorChange& change) {
   const Reduction& r = change.reduction;
   if (std::isnan(r.share)) return "-";
-  return with_decimals(100.0 * r.share, 1) + " % (95 %: " + with_decimals(100.0 * r.interval.low, 1) + " to " +
-         with_decimals(100.0 * r.interval.high, 1) + " %)";
+  return reduction_in_words(r);
 }
 
 std::string evidence_markdown(std::span<const SiteEvidence> evidence) {

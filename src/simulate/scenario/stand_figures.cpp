@@ -7,8 +7,6 @@
 #include "talus/base/text.hpp"
 
 namespace talus {
-namespace {}  // namespace
-
 void Spread::add(double value) {
   low = std::min(low, value), high = std::max(high, value), sum += value;
   ++count;

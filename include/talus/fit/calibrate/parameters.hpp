@@ -30,6 +30,8 @@ struct Parameter {
 
   double value(double z) const;
   double z(double value) const;
+  /// A place z, or the bound that it is beyond.
+  double within(double place) const;
 };
 
 /// The parameters `keys` of ground_fields() in the given zones, with the start as centre of the prior. theta_scale,

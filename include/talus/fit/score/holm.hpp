@@ -23,4 +23,13 @@ inline std::vector<double> holm(std::span<const double> p_values) {
   return corrected;
 }
 
+/// Sets `corrected` of each row from its `p_value`.
+template <class Row>
+void correct_rows(std::vector<Row>& rows) {
+  std::vector<double> p;
+  for (const Row& row : rows) p.push_back(row.p_value);
+  const std::vector<double> corrected = holm(p);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].corrected = corrected[i];
+}
+
 }  // namespace talus

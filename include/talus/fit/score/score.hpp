@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,6 +37,19 @@ struct Score {
   std::vector<RowScore> rows;  ///< ordered by group, then by block
   double cut_short = 0.0;      ///< share of the trials that did not end in a search [-]
 };
+
+/// Weighted mean over groups of `value(g)`, a number of each; groups of NaN do not count. NaN where none counts.
+template <class Value>
+double mean_over(std::span<const GroupScore> groups, const Value& value) {
+  double sum = 0.0, weights = 0.0;
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    if (const double v = value(g); !std::isnan(v)) sum += groups[g].weight * v, weights += groups[g].weight;
+  return weights > 0.0 ? sum / weights : kNotGiven;
+}
+/// Their weighted mean score.
+inline double mean_over(std::span<const GroupScore> groups) {
+  return mean_over(groups, [groups](std::size_t g) { return groups[g].score; });
+}
 
 /// Fewest simulated values with which a row is scored; below, it scores as the climatology of the fitting rows.
 inline constexpr std::size_t kFewestSimulated = 10;

@@ -17,6 +17,7 @@ double tail_begin(const Campaign& campaign);
 /// all nearer stops are alike. Rows with too few simulated values score as the climatology. Without groups where fewer
 /// than five rows were measured.
 ///
+/// @param runs   empty: the climatology is scored
 /// @param folds  see ScoreOptions
 Score tail_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
                  std::span<const std::uint32_t> folds = {});

@@ -47,11 +47,11 @@ TEST(Residual, OfABlockLeftOfTheMeanStopIsPositive) {
   }
 }
 
-/// Two samples, the farther one first in the file. The simulated speeds are 1 to 19 m/s at both; only at the farther
+/// Two samples. The simulated speeds are 1 to 19 m/s at both; only at the farther
 /// one the measured speed is not in their middle. Spread, (z^2 - 1) / sqrt(2): -0.7071 in the middle, 2.0092 above all.
 TEST(Residual, OfASampleBelongsToItsHalfOfThePath) {
   Campaign c = one_block();
-  c.blocks[0].samples = {{.x = 50.0, .distance = 50.0, .speed = 25.0}, {.x = 10.0, .distance = 10.0, .speed = 10.0}};
+  c.blocks[0].samples = {{.x = 10.0, .distance = 10.0, .speed = 10.0}, {.x = 50.0, .distance = 50.0, .speed = 25.0}};
   BlockRuns runs;
   runs.trials = kTrials;
   runs.x.assign(kTrials, kNotGiven);
