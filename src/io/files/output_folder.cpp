@@ -36,8 +36,12 @@ fs::path full_name(const fs::path& path) {
 
 void require_results(const fs::path& folder) {
   std::error_code none;
-  if (!fs::exists(folder / "run.json", none))
-    throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
+  if (fs::exists(folder / "run.json", none)) return;
+  if (fs::exists(folder / "part.json", none))
+    throw InputError(folder.string() +
+                     ": is one part of a run (it has a part.json): join the parts first, with talus merge OUT PART...; "
+                     "give its OUT");
+  throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
 }
 
 namespace {
@@ -88,6 +92,8 @@ void make_hidden(StagedPath& staged) {
   if (error == std::errc::file_exists)
     throw std::runtime_error(parent + ": too many temporary folders of talus; remove " +
                              staged.hidden().filename().string() + "*");
+  if (error == std::errc::filename_too_long)
+    throw InputError(parent + ": the name of the output is too long for its temporary folder; give a shorter one");
   throw InputError(parent + ": no folder can be made there (" + error.message() +
                    "); give an output folder where you may write");
 }

@@ -234,6 +234,11 @@ std::optional<std::string> check_metric(const std::string& path, const std::stri
     throw InputError(path + ": coordinates are in '" + (is_metre(east) ? north : east).unit_name + "' (" +
                      crs_name(wkt) + "), must be metres" +
                      (type == PJ_TYPE_ENGINEERING_CRS ? scaling(path, extent, east.unit, north.unit) : way_out));
+  if (east.direction == "west" || north.direction == "west")
+    throw InputError(path + ": coordinates count to the west and south (" + crs_name(wkt) +
+                     "), must count to the east and north" + way_out +
+                     "; if they do count to the east and north, give the file a system that says so with gdal_edit.py "
+                     "-a_srs");
   check_heights(context.get(), path, wkt);
 
   const double ratio = stretch(context.get(), system.get(), extent);

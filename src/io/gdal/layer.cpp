@@ -24,9 +24,11 @@ const std::vector<std::string> kOfSources{"source_polygons", "source_points"};
 
 /// What a text must be in the place of a number. A comma is not taken as a decimal point: "1,200" may be 1200.
 /// @param in_layer  the text is in a text field of a layer, else in a CSV
-std::string no_number_text(const std::string& text, const std::string& unit, bool in_layer) {
-  const std::string wanted = "must be a number" + unit + ", with a point for decimals, or " +
-                             (in_layer ? "NULL" : "empty") + " where it is not known";
+/// @param may_lack  as of `Layer::number`
+std::string no_number_text(const std::string& text, const std::string& unit, bool in_layer, bool may_lack = true) {
+  const std::string wanted =
+      "must be a number" + unit + ", with a point for decimals" +
+      (may_lack ? std::string(", or ") + (in_layer ? "NULL" : "empty") + " where it is not known" : std::string());
   if (!in_layer) return wanted;
   const bool comma = text.find(',') != std::string::npos;
   return wanted + ": in QGIS make a number field of it with the field calculator, to_real(" +
@@ -177,8 +179,8 @@ std::string Layer::label(const OGRFeature& feature) const {
   return faults_.label(feature.GetFID());
 }
 
-std::optional<double> Layer::number(const OGRFeature& feature, int index, const std::string& name,
-                                    const Bounds& bounds) const {
+std::optional<double> Layer::number(const OGRFeature& feature, int index, const std::string& name, const Bounds& bounds,
+                                    bool may_lack) const {
   if (index < 0 || feature.IsFieldSetAndNotNull(index) == 0) return std::nullopt;
   const OGRFieldType type = fields().GetFieldDefn(index)->GetType();
   const std::string unit = bounds.unit == "1" ? "" : " in " + std::string(bounds.unit);
@@ -190,7 +192,7 @@ std::optional<double> Layer::number(const OGRFeature& feature, int index, const 
     const std::string text = feature.GetFieldAsString(index);
     const auto number = number_of_cell(text);
     if (!number && text.find_first_not_of(' ') == std::string::npos) return std::nullopt;
-    if (!number) throw InputError(where + "'" + text + "': " + no_number_text(text, unit, !is_csv()));
+    if (!number) throw InputError(where + "'" + text + "': " + no_number_text(text, unit, !is_csv(), may_lack));
     value = *number;
   } else if (fields().GetFieldDefn(index)->GetSubType() == OFSTBoolean) {
     throw InputError(where + (value == 0.0 ? "no" : "yes") + " is of the type Boolean, must be a number field" + unit);
@@ -200,7 +202,7 @@ std::optional<double> Layer::number(const OGRFeature& feature, int index, const 
   }
   if (std::isnan(value)) return std::nullopt;
   if (const auto fault = fault_of(bounds, value))
-    throw InputError(where + text_of(value) + ": " + *fault + ", or NULL where it is not known");
+    throw InputError(where + text_of(value) + ": " + *fault + (may_lack ? ", or NULL where it is not known" : ""));
   return value;
 }
 

@@ -65,9 +65,10 @@ class Layer {
   std::string label(const OGRFeature& feature) const;
   /// The value of a numeric field, or of any field of a CSV; nothing if it is NULL or the field is not there (-1).
   /// Throws InputError if it is no number, or out of bounds.
-  /// @param name  of the field, for messages
-  std::optional<double> number(const OGRFeature& feature, int index, const std::string& name,
-                               const Bounds& bounds) const;
+  /// @param name      of the field, for messages
+  /// @param may_lack  whether messages offer to leave the field empty
+  std::optional<double> number(const OGRFeature& feature, int index, const std::string& name, const Bounds& bounds,
+                               bool may_lack = true) const;
   /// The text of a field of any type, without blanks around it; empty if it is NULL or the field is not there (-1).
   /// Throws InputError if it is not UTF-8.
   std::string text(const OGRFeature& feature, int field) const;

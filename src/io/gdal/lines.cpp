@@ -78,7 +78,7 @@ class LineReader {
     const std::string field = key.substr(key.find('.') + 1);
     std::optional<double> value;
     layer_.faults().attempt([&] {
-      value = layer_.number(feature, index, field, bounds_of(key));
+      value = layer_.number(feature, index, field, bounds_of(key), false);
       if (!value) throw InputError(layer_.label(feature) + ": has no " + field + ", must be " + meant_);
     });
     if (value) use_of(index, field, std::string(bounds_of(key).unit)).add(*value);

@@ -123,6 +123,7 @@ RunFacts facts_of(const Json& json) {
   }
   run.warnings = texts_of(json, "warnings");
   run.notes = texts_of(json, "notes");
+  run.files = texts_of(json, "files");
   return run;
 }
 
@@ -206,6 +207,7 @@ std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder
     hazard.object = object.is_object() ? "an object " + text_of(number_of(object, "width_m")) + " m wide" : "a cell";
     if (json.contains("matrix")) read_classes(json.at("matrix"), hazard);
     hazard.warnings = texts_of(json, "warnings");
+    hazard.files = texts_of(json, "files");
     hazard.frequency = frequency_of(json);
     const Json of_run = json.value("run", Json::object());
     hazard.same_run = of_run.value("plan", "") == run.plan_of_hazard;

@@ -69,6 +69,7 @@ struct RunFacts {
   std::vector<InputFile> inputs;
   std::vector<Reprojection> reprojections;
   std::vector<std::string> warnings, notes;
+  std::vector<std::string> files;  ///< that the run has written
 
   double end(const std::string& name) const;  ///< 0 if there is none
   const InputFile* input(const std::string& role) const;
@@ -84,7 +85,8 @@ struct HazardFacts {
   std::vector<std::vector<std::string>> classes;  ///< names: a row for each class of intensity, the shortest time first
   std::vector<std::string> warnings;
   FrequencyFacts frequency;
-  bool same_run = true;  ///< of the plan of run.json
+  std::vector<std::string> files;  ///< that talus hazard has written
+  bool same_run = true;            ///< of the plan of run.json
 };
 
 /// Reads OUT/run.json. Throws InputError if it cannot be read or `talus run` has not written it.

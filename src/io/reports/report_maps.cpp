@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "io/files/checksum.hpp"
 #include "packed_map.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
+#include "talus/base/text.hpp"
 
 namespace talus::io {
 namespace {
@@ -126,6 +128,35 @@ void add_relief(const RunFacts& run, MapSheet& sheet) {
   }
 }
 
+/// Rasters that are there and named in no record, or named and not there.
+class NamedRasters {
+ public:
+  NamedRasters(const fs::path& folder, const RunFacts& run, const std::optional<HazardFacts>& hazard) {
+    add("run.json", run.files, folder);
+    if (hazard) add("hazard.json", hazard->files, folder);
+  }
+
+  /// Of a run that has no list of its files all count as named.
+  bool contains(const std::string& file) const { return named_.empty() || named_.contains(file); }
+  /// By the record, those that are not there.
+  const std::vector<std::string>& missing() const { return missing_; }
+
+ private:
+  void add(const std::string& record, const std::vector<std::string>& files, const fs::path& folder) {
+    std::error_code none;
+    std::vector<std::string> gone;
+    for (const std::string& file : files) {
+      if (!file.ends_with(".tif")) continue;
+      named_.insert(file);
+      if (!fs::exists(folder / file, none)) gone.push_back(file);
+    }
+    if (!gone.empty()) missing_.push_back("Named in " + record + " and not there: " + listed(gone));
+  }
+
+  std::set<std::string> named_;
+  std::vector<std::string> missing_;
+};
+
 /// A raster as a map; nothing with a note if it has no style that can be drawn.
 void add_map(const fs::path& folder, const std::string& name, const Shown& shown, const RunFacts& run,
              MapSheet& sheet) {
@@ -152,10 +183,18 @@ void add_map(const fs::path& folder, const std::string& name, const Shown& shown
   sheet.maps.push_back(std::move(map));
 }
 
+/// A note on rasters without a record: they may be of another run.
+void note_unnamed(const std::vector<std::string>& files, bool has_hazard, MapSheet& sheet) {
+  if (files.empty()) return;
+  sheet.notes.push_back(
+      "Not shown, as neither run.json nor hazard.json names them, so that nobody knows of what run "
+      "they are: " +
+      listed(files) + (has_hazard ? "" : "; there is no hazard.json: repeat talus hazard for its maps"));
+}
+
 /// Where the classes at the two bounds of the frequency differ: a map of its own.
 void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet) {
   const fs::path file = folder / "hazard_class.tif";
-  if (!fs::exists(file)) return;
   const MapRaster classes(file.string(), std::string("class")), undecided(file.string(), std::string("undecided"));
   check_grid(file, undecided, run.grid);
   const std::vector<double> of_class = classes.pixels(sheet.window, PixelValue::Largest);
@@ -184,7 +223,7 @@ void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet)
 
 }  // namespace
 
-MapSheet read_sheet(const fs::path& folder, const RunFacts& run) {
+MapSheet read_sheet(const fs::path& folder, const RunFacts& run, const std::optional<HazardFacts>& hazard) {
   constexpr std::size_t kMostPlaces = 50'000;
   MapSheet sheet;
   if (const fs::path objects = folder / "objects.gpkg"; fs::exists(objects))
@@ -197,13 +236,20 @@ MapSheet read_sheet(const fs::path& folder, const RunFacts& run) {
   sheet.pixel_x = window.side * run.grid.cell_x;
   sheet.pixel_y = window.side * run.grid.cell_y;
   add_relief(run, sheet);
+  const NamedRasters named(folder, run, hazard);
+  sheet.notes.insert(sheet.notes.end(), named.missing().begin(), named.missing().end());
+  std::vector<std::string> unnamed;
   for (const Shown& shown : kShown)
     for (const std::string& name : names_in(folder, shown))
-      if (sheet.maps.size() < kMostMaps)
+      if (!named.contains(name + ".tif"))
+        unnamed.push_back(name + ".tif");
+      else if (sheet.maps.size() < kMostMaps)
         add_map(folder, name, shown, run, sheet);
       else
         sheet.notes.push_back(name + ".tif: is not shown, as there are " + std::to_string(kMostMaps) + " maps already");
-  add_undecided(folder, run, sheet);
+  note_unnamed(unnamed, hazard.has_value(), sheet);
+  if (const std::string classes = "hazard_class.tif"; named.contains(classes) && fs::exists(folder / classes))
+    add_undecided(folder, run, sheet);
   return sheet;
 }
 

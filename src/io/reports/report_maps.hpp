@@ -44,6 +44,8 @@ struct MapSheet {
   std::vector<std::string> notes;  ///< what is left out, and why
 };
 
-MapSheet read_sheet(const std::filesystem::path& folder, const RunFacts& run);
+/// The maps of the rasters that are named in run.json or hazard.json. Others in the folder are of no record that says
+/// what they are; they are left out with a note, as are those that are named and not there.
+MapSheet read_sheet(const std::filesystem::path& folder, const RunFacts& run, const std::optional<HazardFacts>& hazard);
 
 }  // namespace talus::io

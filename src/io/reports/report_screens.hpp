@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "markup.hpp"
+#include "report_facts.hpp"
 
 namespace talus::io {
 
@@ -20,7 +21,7 @@ struct ScreensPart {
 };
 
 /// Throws InputError if a table is there and cannot be understood. No rows without screens.
-ScreensPart read_screens_part(const std::filesystem::path& folder);
+ScreensPart read_screens_part(const std::filesystem::path& folder, const RunFacts& run);
 Markup screens_html(const ScreensPart& part);
 
 }  // namespace talus::io

@@ -46,9 +46,9 @@ RunReport read_report(const fs::path& folder) {
   RunReport report;
   report.run = read_facts(folder);
   report.hazard = read_hazard_facts(folder, report.run);
-  report.sheet = read_sheet(folder, report.run);
+  report.sheet = read_sheet(folder, report.run, report.hazard);
   if (report.run.of_profile) report.profile = read_profile_part(folder);
-  report.screens = read_screens_part(folder);
+  report.screens = read_screens_part(folder, report.run);
   report.barriers = read_barrier_parts(folder, report.hazard);
   report.objects = read_objects_part(folder);
   report.fit = read_fit_part(report.run);

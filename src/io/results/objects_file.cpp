@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "io/gdal/geopackage.hpp"
@@ -506,11 +507,25 @@ std::vector<std::string> ObjectLayer::hits_text(const HazardRules& rules, const 
   return lines;
 }
 
+/// Names of the source features; with their numbers, "A (FID 3)", where two have the same.
+static std::vector<std::string> distinct_names(const std::vector<SourceFeature>& features) {
+  std::map<std::string, std::size_t> held;
+  for (const SourceFeature& f : features) ++held[f.name];
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const SourceFeature& f = features[i];
+    const std::string number = std::to_string(f.id >= 0 ? f.id : static_cast<std::int64_t>(i));
+    names.push_back(f.name.empty() ? number : f.name + (held[f.name] > 1 ? " (FID " + number + ")" : ""));
+  }
+  return names;
+}
+
 void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenario& loaded, const HazardRules& rules,
                         const std::vector<ObjectHits>& hits, const HazardMatrix& matrix) const {
   const Grid& grid = loaded.scenario.surface.grid();
   std::unique_ptr<ObjectsWriter> writer;
   ObjectsTable table;
+  const std::vector<std::string> names = distinct_names(loaded.scenario.features);
   std::string curves = "object,energy_kj,frequency,lower,upper,return_period\n",
               from = "object,feature,frequency,share\n";
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -519,8 +534,7 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
     const std::string object = csv_field(state_->names[i]);
     std::string sources;
     for (const auto& [feature, share] : State::sources_of(state_->known(i) ? hits[i] : ObjectHits{})) {
-      const std::string& given = loaded.scenario.features[feature].name;
-      const std::string name = given.empty() ? std::to_string(feature) : given;
+      const std::string& name = names[feature];
       sources += (sources.empty() ? "" : "; ") + name + ' ' + percent(share);
       from += object + ',' + csv_field(name) + ',' +
               csv_field(static_cast<double>(hits[i].by_feature.at(static_cast<std::uint32_t>(feature))) *

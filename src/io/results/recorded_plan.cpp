@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <optional>
 
+#include "io/files/checksum.hpp"
 #include "io/files/json.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/products/accuracy.hpp"
 
@@ -20,7 +22,22 @@ struct RecordedPlan {
   std::uint32_t rounds = 1;
   std::string record;  // name of the file that says so
   std::string folder;  // where it lay when it was written; empty: not known
+  Json inputs = Json::array();
 };
+
+/// What has changed of the files that a run read: "files that it names have changed, cliffs.csv,".
+std::string changed_text(const Json& inputs) {
+  std::vector<std::string> changed;
+  for (const Json& input : inputs) {
+    const std::string path = input.value("path", ""), before = input.value("sha256", "");
+    if (before.empty()) continue;
+    const std::string now = sha256_of_file(path);
+    if (now != before) changed.push_back(path + (now.empty() ? " (no longer there)" : ""));
+  }
+  if (inputs.empty()) return "it, or a file that it names, has changed";
+  if (changed.empty()) return "a setting in it has changed (the files that it names are the same)";
+  return "files that it names have changed, " + listed(changed) + ",";
+}
 
 /// Reads the scenario of a plan with the files that it was of: where they were, or else beside the results, if these
 /// have been moved or copied since. Throws InputError if these are others now.
@@ -36,9 +53,8 @@ LoadedScenario load_same(const std::string& scenario, const RecordedPlan& plan) 
     LoadedScenario loaded = load_scenario(flags);
     if (plan_checksum(loaded, plan.rounds) == plan.checksum) return loaded;
   }
-  throw InputError(scenario +
-                   ": it, or a file that it names, has changed since the run, so that the run cannot be repeated; run "
-                   "again (the checksums are in " +
+  throw InputError(scenario + ": " + changed_text(plan.inputs) +
+                   " since the run, so that the run cannot be repeated; run again (the checksums are in " +
                    plan.record + ")");
 }
 
@@ -51,7 +67,7 @@ std::optional<RecordedPlan> plan_in(const fs::path& folder) {
     const auto read = [&]() -> std::optional<RecordedPlan> {
       const Json json = read_record(file);
       if (!json.contains("plan")) return std::nullopt;
-      RecordedPlan plan{json.at("plan"), 1, name, json.value("folder", "")};
+      RecordedPlan plan{json.at("plan"), 1, name, json.value("folder", ""), json.value("inputs", Json::array())};
       if (plan.record == "run.json" && json.contains("rounds"))  // the scenario of a part is that of one round
         plan.rounds = static_cast<std::uint32_t>(whole_number(json["rounds"].at("done"), 1, kMostRounds));
       return plan;
@@ -68,7 +84,8 @@ std::optional<RecordedPlan> plan_in(const fs::path& folder) {
 
 LoadedScenario recorded_plan(const fs::path& folder, const std::string& plan) {
   const std::optional<RecordedPlan> recorded = plan_in(folder);
-  return load_same((folder / "scenario.toml").string(), {plan, 1, "run.json", recorded ? recorded->folder : ""});
+  return load_same((folder / "scenario.toml").string(), {plan, 1, "run.json", recorded ? recorded->folder : "",
+                                                         recorded ? recorded->inputs : Json::array()});
 }
 
 LoadedScenario recorded_or_own_plan(const std::string& scenario) {

@@ -132,8 +132,8 @@ class EffectReader {
 
   void days(const EffectSpec& effect, std::vector<int>& list) {
     const auto days = table_.numbers("days", kDay);
-    if (table_.value()->find("days") == nullptr && list.empty())
-      table_.faults().push_back(effect.where + " has no days, must list those on which it acts: days = [1, 2]");
+    const bool none = days ? days->empty() : table_.value()->find("days") == nullptr && list.empty();
+    if (none) table_.faults().push_back(effect.where + " has no days, must list those on which it acts: days = [1, 2]");
     if (!days) return;
     list.clear();  // replaces those of an included file
     for (const double day : *days) list.push_back(static_cast<int>(day));

@@ -14,11 +14,6 @@ void widen(Range& all, const Range& range) {
   all = {std::min(all.low, range.low), std::max(all.high, range.high)};
 }
 
-std::string metres(const Range& range) {
-  const std::string low = with_digits(range.low, 3), high = with_digits(range.high, 3);
-  return (low == high ? low : low + " to " + high) + " m";
-}
-
 constexpr double kRounding = 1e-9;
 
 bool below(const FittedSizes& sizes, const Range& diameters) {
@@ -59,6 +54,11 @@ std::string extrapolation_of_block_mass(const Scenario& scenario, const Range& d
 }
 
 }  // namespace
+
+std::string metres(const Range& range) {
+  const std::string low = with_digits(range.low, 3), high = with_digits(range.high, 3);
+  return (low == high ? low : low + " to " + high) + " m";
+}
 
 Range diameters_of(const Scenario& scenario) {
   Range all{INFINITY, 0.0};
@@ -114,7 +114,7 @@ std::string guess_warning(std::span<const Preset* const> presets) {
 }
 
 std::string rare_class_warning(const Scenario& scenario) {
-  constexpr double kFew = 20.0;  // blocks of a class in one round
+  constexpr double kFew = 20.0, kNone = 1.0;  // blocks of a class in one round
   const std::vector<double> frequencies = class_frequencies(scenario);
   const auto& classes = scenario.blocks.classes;
   if (frequencies.size() < 2 || frequencies.size() != classes.size()) return {};
@@ -126,7 +126,11 @@ std::string rare_class_warning(const Scenario& scenario) {
     const double drawn = static_cast<double>(scenario.released()) * classes[i].weight / weights;
     if (frequencies[i] > 0.0 && drawn < kFew)
       rare.push_back(metres(classes[i].diameter) + " (" + percent(frequencies[i] / events) + " of the events, about " +
-                     with_digits(drawn, 2) + " of " + std::to_string(scenario.released()) + " blocks in a round)");
+                     with_digits(drawn, 2) + " of " + std::to_string(scenario.released()) + " blocks in a round" +
+                     (drawn < kNone ? ": most likely none, so that its " + with_digits(frequencies[i], 3) +
+                                          " events per year are in the total and in no map"
+                                    : "") +
+                     ")");
   }
   if (rare.empty()) return {};
   return std::string(kSizeWarning) + std::string(kRareClasses) + joined(rare) +

@@ -19,6 +19,7 @@ namespace talus {
 namespace {
 
 constexpr int kBits = 62;                    // of the sum over all trajectories of all rounds
+constexpr double kLargestFactor = 1e9;       // events of a block of a class over those of a block of equal shares
 constexpr std::int64_t kLeastWeight = 1024;  // below it the unit would change a weight by more than 0.05 %
 constexpr std::string_view kOverlapWarning = "sources overlap: ", kAreaWarning = "areas of sources: ";
 
@@ -169,6 +170,17 @@ std::vector<double> class_factors(const Scenario& s, const std::vector<double>& 
   return factors;
 }
 
+/// Refuses the class whose blocks would stand for most events each.
+[[noreturn]] void refuse_light_class(const Scenario& s, const std::vector<double>& frequencies,
+                                     const std::vector<double>& factors) {
+  constexpr double kComfortable = 1e3;  // times the events of a block of equal shares
+  const auto c = static_cast<std::size_t>(std::ranges::max_element(factors) - factors.begin());
+  const BlockClass& light = s.blocks.classes[c];
+  refuse("the class of " + metres(light.diameter) + " has the weight " + text_of(light.weight) +
+         ", far too small for its " + text_of(frequencies[c]) + " events per year: give it " +
+         with_digits(light.weight * factors[c] / kComfortable, 2) + " or more (a weight changes no frequency)");
+}
+
 double power_of_two_above(double value) {
   return std::ldexp(1.0, std::ilogb(value) + 1);
 }
@@ -262,10 +274,7 @@ std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t 
   if (found.total) events = s.frequency.total;
   const std::vector<double> cells = cell_frequencies(s, found, events), factors = class_factors(s, by_class);
   const double largest_factor = *std::ranges::max_element(factors);
-  constexpr const char* kTooLight =
-      "a class of blocks has a weight far too small for its frequency: give it a larger one, which changes no "
-      "frequency";
-  if (largest_factor > 1e9) refuse(kTooLight);
+  if (largest_factor > kLargestFactor) refuse_light_class(s, by_class, factors);
 
   AnnualWeights out;
   WeightScale& scale = out.scale_;
@@ -290,7 +299,8 @@ std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t 
     for (const double factor : factors) {
       const double weight = cell * factor / s.trajectories;
       out.weights_.push_back(static_cast<std::int64_t>(weight / scale.unit + 0.5));
-      if (weight > 0.0 && out.weights_.back() < kLeastWeight && largest_factor > 1e6) refuse(kTooLight);
+      if (weight > 0.0 && out.weights_.back() < kLeastWeight && largest_factor > 1e6)
+        refuse_light_class(s, by_class, factors);
       if (weight > 0.0 && out.weights_.back() < kLeastWeight)
         refuse("a trajectory stands for " + text_of(weight) + " events per year, too few beside all " +
                text_of(scale.total) + "; give 0 instead");

@@ -20,6 +20,9 @@ Range diameters_of(const Scenario& scenario);
 /// if there is nothing to say.
 std::string size_warning(const Scenario& scenario, std::span<const Preset* const> presets);
 
+/// "0.5 to 1.2 m", for messages.
+std::string metres(const Range& range);
+
 /// One line if presets of the ground were fitted to no data. Empty if there is none.
 std::string guess_warning(std::span<const Preset* const> presets);
 
