@@ -704,6 +704,14 @@ class Walk(Case):
     def screens(self, out):
         return [row["screen"] for row in self.read_table(out + "/screens.csv")]
 
+    def test_a_capacity_that_is_none_must_be_given(self):
+        """A net needs both numbers: the message does not offer to leave them out, which is refused."""
+        self.scenario()
+        for value, told in ((-1.0, "field capacity = -1: must be 0 to inf"), (None, "has no capacity, must be")):
+            self.nets((120.0, "net", 4.0, value))
+            done = self.fails(2, told, arguments=["check", self.path("s.toml")])
+            self.assertNotIn("where it is not known", done.stderr)
+
     def test_one_that_is_more_than_any_net_is_said(self):
         """150 kJ in J, 3 m that were typed as 30; also where the scenario names it. Large nets and dams are silent."""
         words = "more than any net: is the capacity in J, or is it a dam?"

@@ -40,8 +40,8 @@ class ChangedInputs(Case):
     def trace(self, scenario="out/scenario.toml", **options):
         return self.run_well("trace", self.path(scenario), "--source", "1", "--block", "2", **options).stdout
 
-    def refuses(self, scenario="out/scenario.toml"):
-        self.fails(2, scenario, "has changed since the run",
+    def refuses(self, scenario="out/scenario.toml", *words):
+        self.fails(2, scenario, "has changed since the run", *words,
                    arguments=["trace", self.path(scenario), "--source", "1", "--block", "2"])
 
     def replace_in(self, name, old, new):
@@ -96,7 +96,7 @@ class ChangedInputs(Case):
         self.assertEqual(self.trace(), before)
         write_dem(self.path("dem.tif"), heights() * 1.1)
         for scenario in runs:
-            self.refuses(scenario)
+            self.refuses(scenario, f"a file that it names has changed since the run ({self.path('dem.tif')})")
         shutil.copy(self.path("out/scenario.toml"), self.path("out/mine.toml"))
         changed = self.trace("s.toml")
         self.assertNotEqual(changed, before)
@@ -104,7 +104,7 @@ class ChangedInputs(Case):
         write_dem(self.path("dem.tif"), heights())
         self.assertEqual(self.trace(), before)
         self.replace_in("out/scenario.toml", b"seed = ", b"seed = 1")
-        self.refuses()
+        self.refuses("out/scenario.toml", "a setting in it has changed since the run")
 
     def test_files_that_are_read_with_an_input(self):
         gdal.Translate(self.path("raw.bil"), self.path("dem.tif"), format="EHdr")

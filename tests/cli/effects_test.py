@@ -85,6 +85,8 @@ class Effects(Case):
                 self.run_scenario(name, text)
                 changed = digests(self.path(name))["velocity.tif"] != first
                 self.assertEqual(changed, name != "wet")  # the run has no day
+        self.write("none.toml", HEAD + "[effects.wet-ground]\nsoftening = 0.8\ndays = []\n")
+        self.fails(2, "[effects.wet-ground] has no days, must list those on which it acts", arguments=["check", self.path("none.toml")])
         self.write("day.toml", "day = 9\n" + HEAD + "[effects.wet-ground]\nsoftening = 0.8\ndays = [2, 9]\n")
         self.run_well("run", self.path("day.toml"), "-o", self.path("day"))
         self.assertNotEqual(digests(self.path("day"))["velocity.tif"], first)

@@ -612,6 +612,7 @@ class Hazard(OneThread, KeptRuns, Case):
             for row, column in ((curve[0], "frequency"), (by_energy[30.0], "frequency_30")):
                 self.assertEqual([row[key] for key in ("frequency", "lower", "upper")],
                                  [values[column + end] for end in ("", "_lower", "_upper")], "as in objects.csv")
+        self.assertEqual({row["feature"] for row in self.read_table("out/objects_sources.csv")}, {"west", "east"})
         shares = [float(row["share"]) for row in self.read_table("out/objects_sources.csv") if row["object"] == "B"]
         self.assertAlmostEqual(sum(shares), 1.0, 4)
         self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "--overwrite", "-q",
@@ -709,6 +710,18 @@ class Hazard(OneThread, KeptRuns, Case):
         write_features(self.path("p.gpkg"), "o", shapes[1:3], [("name", ogr.OFTString)])
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("p.gpkg"), "--overwrite")
         self.assertNotIn("the same name", done.stderr)
+
+    def test_sources_of_one_name_are_told_apart(self):
+        write_features(self.path("sources.gpkg"), "sources", [(box(100, 230, 20, 10), ["cliff", 0.5]), (box(200, 230, 20, 10), ["cliff", 0.02])],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        self.write("s.toml", FEW)
+        self.simulate()
+        write_features(self.path("houses.gpkg"), "houses", [(box(x, 150, 10, 8), [name]) for x, name in ((105, "A"), (205, "B"))],
+                       [("name", ogr.OFTString)])
+        self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "-q")
+        rows = self.read_table("out/objects_sources.csv")
+        largest = {name: max((row for row in rows if row["object"] == name), key=lambda row: float(row["share"])) for name in "AB"}
+        self.assertEqual([largest[name]["feature"] for name in "AB"], ["cliff (FID 1)", "cliff (FID 2)"])
 
     def test_objects_without_a_name_are_called_by_their_id(self):  # by their number, which may be the id of another
         self.simulated()

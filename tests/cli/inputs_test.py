@@ -598,6 +598,12 @@ class OffTheDem(InputCase):
         self.assertIn("50 % of polygon 1 (half) lies where the DEM has no heights:", said)
         self.assertIn("features where the DEM has no heights, which release nothing: FID 2 (all)", said)
 
+    def test_a_dem_that_counts_to_the_west_is_refused(self):
+        """EPSG:2048, Hartebeesthoek94 / Lo19: the axes point west and south."""
+        gdal.Translate(self.path("lo19.tif"), self.path("dem.tif"), outputSRS="EPSG:2048", outputBounds=[1000, 3700300, 1300, 3700000])
+        self.fails(2, "lo19.tif: coordinates count to the west and south (EPSG:2048", "must count to the east and north",
+                   arguments=["check", "--dem", self.path("lo19.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "1"])
+
     def test_degrees_and_exchanged_axes_are_seen(self):
         """In a table without a system, which is taken in that of the DEM."""
         for x, y, told in ((8.1, 46.7, "these look like degrees, taken for metres"), (NORTH - 60, WEST + 150, "x and y look exchanged"),

@@ -152,6 +152,8 @@ class Parts(KeptRuns, RunCase):
         self.fails(2, "1 of 2 parts are given, part 2 is the first", arguments=["merge", self.path("m"), one])
         self.fails(2, "give each part once", arguments=["merge", self.path("m"), one, one])
         self.fails(2, "is no part of a run", arguments=["merge", self.path("m"), self.folder, one])
+        for command in (["hazard", one], ["report", one], ["barrier", one, "--screen", "road"]):
+            self.fails(2, "part1: is one part of a run", "join the parts first, with talus merge OUT PART...", arguments=command)
         empty = self.run_well("run", self.path("s.toml"), "-o", self.path("empty"), "--part", "1/99999")
         self.assertIn("is empty: the plan has", empty.stderr)
         self.run_scenario("other", "--part", "2/2", "--seed", "9")

@@ -6,6 +6,8 @@
 #include "io/gdal/csv_table.hpp"
 #include "io/results/screen_columns.hpp"
 #include "svg.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {

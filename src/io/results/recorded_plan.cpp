@@ -25,18 +25,17 @@ struct RecordedPlan {
   Json inputs = Json::array();
 };
 
-/// What has changed of the files that a run read: "files that it names have changed, cliffs.csv,".
+/// What is not as it was in a run: a file that it read, or else the scenario.
 std::string changed_text(const Json& inputs) {
   std::vector<std::string> changed;
   for (const Json& input : inputs) {
     const std::string path = input.value("path", ""), before = input.value("sha256", "");
-    if (before.empty()) continue;
-    const std::string now = sha256_of_file(path);
-    if (now != before) changed.push_back(path + (now.empty() ? " (no longer there)" : ""));
+    const std::string now = before.empty() ? before : sha256_of_file(path);
+    if (now != before) changed.push_back(path + (now.empty() ? " is gone" : ""));
   }
-  if (inputs.empty()) return "it, or a file that it names, has changed";
-  if (changed.empty()) return "a setting in it has changed (the files that it names are the same)";
-  return "files that it names have changed, " + listed(changed) + ",";
+  if (!changed.empty()) return "a file that it names has changed since the run (" + listed(changed) + ")";
+  return inputs.empty() ? "it, or a file that it names, has changed since the run"
+                        : "a setting in it has changed since the run";
 }
 
 /// Reads the scenario of a plan with the files that it was of: where they were, or else beside the results, if these
@@ -54,8 +53,7 @@ LoadedScenario load_same(const std::string& scenario, const RecordedPlan& plan) 
     if (plan_checksum(loaded, plan.rounds) == plan.checksum) return loaded;
   }
   throw InputError(scenario + ": " + changed_text(plan.inputs) +
-                   " since the run, so that the run cannot be repeated; run again (the checksums are in " +
-                   plan.record + ")");
+                   ", so that the run cannot be repeated; run again (the checksums are in " + plan.record + ")");
 }
 
 /// What the record of a run or part says; nothing if there is none, or one without a plan.

@@ -9,6 +9,7 @@
 #include "recorded_screens.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/files/output_folder.hpp"
 #include "talus/io/gdal/vectors.hpp"
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/run_record.hpp"
@@ -147,11 +148,8 @@ std::string forest_text(const std::vector<std::string>& effects) {
 }
 
 RunSummary read_run(const std::filesystem::path& folder) {
+  require_results(folder);
   const std::filesystem::path file = folder / "run.json";
-  std::error_code none;
-  if (!std::filesystem::exists(file, none))
-    throw InputError(folder.string() +
-                     ": has no run.json that can be read, must be a folder that talus run has written");
   const std::string text = read_file(file.string(), file.string(), "a record of talus run", kMostRecord);
   return understood(file, kRunAgain, [&] {
     const Json json = parsed_record(text);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -176,8 +177,9 @@ std::vector<double> class_factors(const Scenario& s, const std::vector<double>& 
   constexpr double kComfortable = 1e3;  // times the events of a block of equal shares
   const auto c = static_cast<std::size_t>(std::ranges::max_element(factors) - factors.begin());
   const BlockClass& light = s.blocks.classes[c];
+  const double events = std::accumulate(frequencies.begin(), frequencies.end(), 0.0);
   refuse("the class of " + metres(light.diameter) + " has the weight " + text_of(light.weight) +
-         ", far too small for its " + text_of(frequencies[c]) + " events per year: give it " +
+         ", far too small for its " + percent(frequencies[c] / events) + " of the events: give it " +
          with_digits(light.weight * factors[c] / kComfortable, 2) + " or more (a weight changes no frequency)");
 }
 
