@@ -80,16 +80,7 @@ std::string differences(const std::vector<Setting>& before, const std::vector<Se
       words.push_back(s.key + " " + s.value + " instead of " + was);
   for (const Setting& s : before)
     if (!std::ranges::count(now, s.key, &Setting::key)) words.push_back("no " + s.key + " instead of " + s.value);
-  for (const io::InputFile& file : files_now) {
-    if (file.role == "scenario" || file.role == "include") continue;  // their settings are above
-    const auto was = std::ranges::find(files_before, file.role, &io::InputFile::role);
-    if (was == files_before.end() || was->sha256 != file.sha256)
-      words.push_back((file.sha256 == file.content ? "" : "perhaps ") +  // a GeoPackage changes when a program opens it
-                      ("another content of the file of " + file.role));
-  }
-  for (const io::InputFile& file : files_before)
-    if (std::ranges::find(files_now, file.role, &io::InputFile::role) == files_now.end())
-      words.push_back("no file of " + file.role);
+  for (std::string& word : io::changed_inputs(files_before, files_now)) words.push_back(std::move(word));
   return words.empty() ? "" : " (" + listed(words) + ")";
 }
 

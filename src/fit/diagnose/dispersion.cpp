@@ -1,11 +1,10 @@
 #include "talus/fit/diagnose/dispersion.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "talus/fit/diagnose/score_test.hpp"
+#include "talus/fit/diagnose/corrected.hpp"
 
 namespace talus {
 namespace {
@@ -87,7 +86,8 @@ Squares about_groups(const Scatters::Kind& kind, const MatrixXd& residuals, cons
   return out;
 }
 
-/// Share of z beyond P95: of z itself, as about the mean of a group nothing would be beyond where all are.
+/// Share of z beyond P95, of those that were seen: of z itself, as about the mean of a group nothing would be beyond
+/// where all are.
 double share_beyond_p95(const Scatters::Kind& kind, const MatrixXd& residuals) {
   double beyond = 0.0, seen = 0.0;
   for (const Index o : kind.observables)
@@ -104,11 +104,14 @@ VectorXd scaled(const VectorXd& statistics, bool tail) {
   return tail ? statistics : VectorXd(statistics.cwiseMax(1e-12).array().log());
 }
 
-/// A constant and the scores, by set.
-MatrixXd explained_by(const MatrixXd& scores) {
-  MatrixXd x(scores.cols(), scores.rows() + 1);
-  x << VectorXd::Ones(scores.cols()), scores.transpose();
-  return x;
+/// How rare numbers are among some that scatter as `drawn`: less their distance from its mean in standard deviations,
+/// either way; of a tail upwards only. The smallest is the rarest.
+std::vector<double> rarity_of(const VectorXd& numbers, const VectorXd& drawn, bool tail) {
+  const double mean = drawn.mean();
+  const double sd = std::sqrt(std::max((drawn.array() - mean).square().mean(), 1e-300));
+  std::vector<double> rarity;
+  for (const double number : numbers) rarity.push_back(-(tail ? number - mean : std::abs(number - mean)) / sd);
+  return rarity;
 }
 
 }  // namespace
@@ -129,27 +132,18 @@ VectorXd Scatters::of(const MatrixXd& residuals) const {
   return out;
 }
 
-DispersionTest dispersion_test(const std::vector<Scatters::Kind>& kinds, const ScatteredSets& drawn,
-                               const ScatteredSets& measured) {
+DispersionTest dispersion_test(const std::vector<Scatters::Kind>& kinds, const MatrixXd& drawn,
+                               const VectorXd& measured) {
   DispersionTest test;
-  if (kinds.empty() || drawn.scatters.cols() == 0) return test;
-  const MatrixXd sets = explained_by(drawn.scores), own_set = explained_by(measured.scores);
-  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> regression(sets);
-  std::vector<std::vector<double>> rarity;  // by kind and drawn set: the smaller the rarer
+  if (kinds.empty() || drawn.cols() == 0) return test;
+  std::vector<std::vector<double>> rarity;  // by kind and drawn set
   std::vector<double> own;
   for (std::size_t k = 0; k < kinds.size(); ++k) {
-    const bool tail = kinds[k].tail;
-    const VectorXd drawn_of = drawn.scatters.row(static_cast<Index>(k)).transpose();
-    const VectorXd measured_of = measured.scatters.row(static_cast<Index>(k)).transpose();
-    const VectorXd slope = regression.solve(scaled(drawn_of, tail));
-    const VectorXd away = scaled(drawn_of, tail) - sets * slope;
-    const double own_away = (scaled(measured_of, tail) - own_set * slope)[0];
-    const double sd = std::sqrt(std::max(away.squaredNorm() / static_cast<double>(away.size()), 1e-300));
-    const auto rare = [&](double a) { return -(tail ? a : std::abs(a)) / sd; };  // a tail is too long, never too short
-    rarity.emplace_back();
-    for (const double a : away) rarity.back().push_back(rare(a));
-    own.push_back(rare(own_away));
-    test.rows.push_back({kinds[k].what, measured_of[0], drawn_of.mean(), 1.0});
+    const auto row = static_cast<Index>(k);
+    const VectorXd of_sets = scaled(drawn.row(row).transpose(), kinds[k].tail);
+    rarity.push_back(rarity_of(of_sets, of_sets, kinds[k].tail));
+    own.push_back(rarity_of(scaled(measured.segment(row, 1), kinds[k].tail), of_sets, kinds[k].tail)[0]);
+    test.rows.push_back({kinds[k].what, measured[row], drawn.row(row).mean(), 1.0});
   }
   const Corrected p = corrected(rarity, own);
   for (std::size_t k = 0; k < kinds.size(); ++k) test.rows[k].p_value = p.effects[k];

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "talus/base/text.hpp"
+#include "talus/fit/diagnose/corrected.hpp"
 #include "talus/fit/diagnose/energy_component.hpp"
 #include "talus/fit/score/holm.hpp"
 #include "talus/physics/effects/registry.hpp"
@@ -107,7 +108,8 @@ FamilyTest dispersion(const DispersionTest& test, const FamilyOptions& options) 
     return family;
   }
   family.p_value = test.p_value;
-  family.note = "p from " + std::to_string(options.replicates) + " data sets drawn from the model";
+  family.note = "p from " + std::to_string(options.replicates) +
+                " data sets without an effect, of grounds that the measurements leave open";
   for (const DispersionRow& row : test.rows)
     family.parts.push_back({row.what, row.what.ends_with("P95") ? "share" : "variance", row.statistic, row.p_value});
   return family;

@@ -21,7 +21,7 @@ double room_below(const Model& model) {
   return room;
 }
 
-/// A column of the trials of each block, which stands in for what was measured: one column each.
+/// A data set: of each block one of its trials, the same of its residuals and of its scores. One column each.
 MatrixXd drawn_set(const std::vector<MatrixXd>& trials, std::span<const std::uint32_t> streams, std::uint64_t seed,
                    std::uint32_t set) {
   MatrixXd drawn(trials.front().rows(), std::ssize(trials));

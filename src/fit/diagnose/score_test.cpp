@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "null_scores.hpp"
+#include "talus/fit/diagnose/corrected.hpp"
 #include "talus/fit/diagnose/projection.hpp"
 #include "talus/fit/diagnose/residual.hpp"
 
@@ -131,31 +132,6 @@ OwnScores own_scores(const Campaign& campaign, const TestedModel& at, const Vect
 
 }  // namespace
 
-Corrected corrected(std::span<const std::vector<double>> simulated, std::span<const double> measured) {
-  // Number of data sets with a p-value of an effect as small, then that p-value: it decides between equal numbers of
-  // two effects.
-  using Rarity = std::pair<double, double>;
-  const std::size_t n = simulated.front().size();
-  const auto sets = static_cast<double>(n + 1);
-  std::vector<Rarity> rarest(n, {sets, 1.0});  // by data set: by its most unlikely effect
-  Rarity own{sets, 1.0};
-  Corrected out;
-  for (std::size_t e = 0; e < simulated.size(); ++e) {
-    std::vector<double> sorted = simulated[e];
-    sorted.push_back(measured[e]);
-    std::sort(sorted.begin(), sorted.end());
-    const auto rarity = [&sorted](double p) {
-      return Rarity{std::upper_bound(sorted.begin(), sorted.end(), p) - sorted.begin(), p};
-    };
-    for (std::size_t set = 0; set < n; ++set) rarest[set] = std::min(rarest[set], rarity(simulated[e][set]));
-    own = std::min(own, rarity(measured[e]));
-    out.effects.push_back(rarity(measured[e]).first / sets);
-  }
-  const auto as_rare = std::count_if(rarest.begin(), rarest.end(), [&](const Rarity& r) { return r <= own; });
-  out.all = (static_cast<double>(as_rare) + 1.0) / sets;
-  return out;
-}
-
 SettledModel settled_model(const Campaign& campaign, const TestedModel& fitted, const std::vector<bool>& rows,
                            const ScoreTestOptions& options, const Observer& simulated) {
   const Observer observed = observer_of(campaign, rows, options);
@@ -195,13 +171,13 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
   const CampaignScores scores = directions.scores();
   const MatrixXd covariance = covariance_of(scores.trials);
   const OpenGrounds grounds(base, steps, scores, covariance, rules);
-  const Scatters scatters(campaign, space, directions.blocks(), directions.measured());
+  const MatrixXd residuals = directions.measured();
+  const Scatters scatters(campaign, space, directions.blocks(), residuals);
   const NullSets null =
       null_sets(grounds, directions, scores.means, scatters, trials_of(campaign, rows, options), options);
   const VectorXd measured = scores.measured - null.mean;
   ScoreTest test;
-  test.dispersion = dispersion_test(scatters.kinds(), {null.scatters, null.scores.topRows(of_base)},
-                                    {scatters.of(directions.measured()), measured.head(of_base)});
+  test.dispersion = dispersion_test(scatters.kinds(), null.scatters, scatters.of(residuals));
   std::vector<Projection> projections;
   std::vector<std::size_t> effect_of;
   for (const TestedPlace& place : places_of(candidates, of_base, directions.size(), rules)) {

@@ -113,4 +113,18 @@ std::string sha256_of_bytes(std::string_view bytes) {
   return sum.digits();
 }
 
+std::vector<std::string> changed_inputs(std::span<const InputFile> before, std::span<const InputFile> now) {
+  std::vector<std::string> words;
+  for (const InputFile& file : now) {
+    if (file.role == "scenario" || file.role == "include") continue;
+    const auto was = std::ranges::find(before, file.role, &InputFile::role);
+    if (was == before.end() || was->sha256 != file.sha256)
+      words.push_back((file.sha256 == file.content ? "" : "perhaps ") +
+                      ("another content of the file of " + file.role));
+  }
+  for (const InputFile& file : before)
+    if (std::ranges::find(now, file.role, &InputFile::role) == now.end()) words.push_back("no file of " + file.role);
+  return words;
+}
+
 }  // namespace talus::io

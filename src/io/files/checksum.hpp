@@ -1,7 +1,9 @@
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "talus/io/origin/origin.hpp"
 
@@ -34,5 +36,9 @@ std::string sha256_of_file(const std::string& path);
 /// The record of an input that was read. Throws InputError if it cannot be read again: a run without its checksum could
 /// not be compared with another.
 InputFile recorded_input(const std::string& role, const std::string& path);
+
+/// "another content of the file of dem", for each file that differs between two records of a plan. Without those of the
+/// scenario, of which the settings tell. A GeoPackage that a program has opened differs "perhaps".
+std::vector<std::string> changed_inputs(std::span<const InputFile> before, std::span<const InputFile> now);
 
 }  // namespace talus::io

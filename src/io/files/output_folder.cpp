@@ -39,8 +39,8 @@ void require_results(const fs::path& folder) {
   if (fs::exists(folder / "run.json", none)) return;
   if (fs::exists(folder / "part.json", none))
     throw InputError(folder.string() +
-                     ": is one part of a run (it has a part.json): join the parts first, with talus merge OUT PART...; "
-                     "give its OUT");
+                     ": is one part of a run (it has a part.json): join the parts first, with talus merge OUT PART..., "
+                     "then give that OUT");
   throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
 }
 

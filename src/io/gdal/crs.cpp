@@ -235,10 +235,11 @@ std::optional<std::string> check_metric(const std::string& path, const std::stri
                      crs_name(wkt) + "), must be metres" +
                      (type == PJ_TYPE_ENGINEERING_CRS ? scaling(path, extent, east.unit, north.unit) : way_out));
   if (east.direction == "west" || north.direction == "west")
-    throw InputError(path + ": coordinates count to the west and south (" + crs_name(wkt) +
-                     "), must count to the east and north" + way_out +
-                     "; if they do count to the east and north, give the file a system that says so with gdal_edit.py "
-                     "-a_srs");
+    throw InputError(path + ": coordinates count to the " + east.direction + " and " + north.direction + " (" +
+                     crs_name(wkt) +
+                     "), must count to the east and north. In most such files they do so all the same, with a minus: "
+                     "give the file a system that says so with gdal_edit.py -a_srs, as EPSG:5514 for EPSG:5513; else "
+                     "reproject it with gdalwarp, and look in QGIS whether it lies where it should");
   check_heights(context.get(), path, wkt);
 
   const double ratio = stretch(context.get(), system.get(), extent);

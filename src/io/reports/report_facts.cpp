@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/files/own_files.hpp"
 #include "io/results/acting_record.hpp"
 #include "io/results/recorded_run.hpp"
 #include "io/results/recorded_screens.hpp"
@@ -123,7 +124,6 @@ RunFacts facts_of(const Json& json) {
   }
   run.warnings = texts_of(json, "warnings");
   run.notes = texts_of(json, "notes");
-  run.files = texts_of(json, "files");
   return run;
 }
 
@@ -155,6 +155,7 @@ RunFacts read_facts(const std::filesystem::path& folder) {
   require_results(folder);
   const std::filesystem::path file = folder / "run.json";
   RunFacts run = understood(file, facts_of);
+  run.files = files_of_record(file);
   run.written = day_of(file);
   return run;
 }
@@ -207,7 +208,7 @@ std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder
     hazard.object = object.is_object() ? "an object " + text_of(number_of(object, "width_m")) + " m wide" : "a cell";
     if (json.contains("matrix")) read_classes(json.at("matrix"), hazard);
     hazard.warnings = texts_of(json, "warnings");
-    hazard.files = texts_of(json, "files");
+    hazard.files = files_of_record(file);
     hazard.frequency = frequency_of(json);
     const Json of_run = json.value("run", Json::object());
     hazard.same_run = of_run.value("plan", "") == run.plan_of_hazard;

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "io/files/checksum.hpp"
 #include "packed_map.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
-#include "talus/base/text.hpp"
 
 namespace talus::io {
 namespace {
@@ -79,10 +77,11 @@ void check_grid(const fs::path& file, const MapRaster& raster, const RecordedGri
 }
 
 /// The cells that something passes, with the objects and a rim; the whole grid where nothing is known.
-MapWindow window_of(const fs::path& folder, const RecordedGrid& grid, const Outlines& objects) {
+MapWindow window_of(const fs::path& folder, const NamedFiles& named, const RecordedGrid& grid,
+                    const Outlines& objects) {
   MapWindow window{0, 0, grid.columns, grid.rows, 1};
   const fs::path passages = folder / "impact_probability.tif";
-  if (fs::exists(passages)) {
+  if (named.contains(passages.filename()) && fs::exists(passages)) {
     const MapRaster raster(passages.string(), 1);
     check_grid(passages, raster, grid);
     window = raster.positive_cells().value_or(window);
@@ -128,35 +127,6 @@ void add_relief(const RunFacts& run, MapSheet& sheet) {
   }
 }
 
-/// Rasters that are there and named in no record, or named and not there.
-class NamedRasters {
- public:
-  NamedRasters(const fs::path& folder, const RunFacts& run, const std::optional<HazardFacts>& hazard) {
-    add("run.json", run.files, folder);
-    if (hazard) add("hazard.json", hazard->files, folder);
-  }
-
-  /// Of a run that has no list of its files all count as named.
-  bool contains(const std::string& file) const { return named_.empty() || named_.contains(file); }
-  /// By the record, those that are not there.
-  const std::vector<std::string>& missing() const { return missing_; }
-
- private:
-  void add(const std::string& record, const std::vector<std::string>& files, const fs::path& folder) {
-    std::error_code none;
-    std::vector<std::string> gone;
-    for (const std::string& file : files) {
-      if (!file.ends_with(".tif")) continue;
-      named_.insert(file);
-      if (!fs::exists(folder / file, none)) gone.push_back(file);
-    }
-    if (!gone.empty()) missing_.push_back("Named in " + record + " and not there: " + listed(gone));
-  }
-
-  std::set<std::string> named_;
-  std::vector<std::string> missing_;
-};
-
 /// A raster as a map; nothing with a note if it has no style that can be drawn.
 void add_map(const fs::path& folder, const std::string& name, const Shown& shown, const RunFacts& run,
              MapSheet& sheet) {
@@ -181,15 +151,6 @@ void add_map(const fs::path& folder, const std::string& name, const Shown& shown
     for (const double value : values) sheet.sources.push_back(value > 0.0 ? 1 : 0);
   if ((name == "trapped" || name == "exits") && !(map.largest > 0.0)) return;  // an empty map says nothing
   sheet.maps.push_back(std::move(map));
-}
-
-/// A note on rasters without a record: they may be of another run.
-void note_unnamed(const std::vector<std::string>& files, bool has_hazard, MapSheet& sheet) {
-  if (files.empty()) return;
-  sheet.notes.push_back(
-      "Not shown, as neither run.json nor hazard.json names them, so that nobody knows of what run "
-      "they are: " +
-      listed(files) + (has_hazard ? "" : "; there is no hazard.json: repeat talus hazard for its maps"));
 }
 
 /// Where the classes at the two bounds of the frequency differ: a map of its own.
@@ -223,31 +184,28 @@ void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet)
 
 }  // namespace
 
-MapSheet read_sheet(const fs::path& folder, const RunFacts& run, const std::optional<HazardFacts>& hazard) {
+MapSheet read_sheet(const fs::path& folder, const RunFacts& run, const NamedFiles& named) {
   constexpr std::size_t kMostPlaces = 50'000;
   MapSheet sheet;
-  if (const fs::path objects = folder / "objects.gpkg"; fs::exists(objects))
+  if (const fs::path objects = folder / "objects.gpkg"; named.contains(objects.filename()) && fs::exists(objects))
     sheet.objects = read_outlines(objects.string(), "objects", {"object", "name"}, kMostPlaces);  // earlier runs: name
   if (sheet.objects.cut) sheet.notes.push_back("objects.gpkg: has more objects than are drawn");
-  sheet.window = window_of(folder, run.grid, sheet.objects);
+  sheet.window = window_of(folder, named, run.grid, sheet.objects);
   const MapWindow& window = sheet.window;
   sheet.west = run.grid.west + window.column * run.grid.cell_x;
   sheet.north = run.grid.north - window.row * run.grid.cell_y;
   sheet.pixel_x = window.side * run.grid.cell_x;
   sheet.pixel_y = window.side * run.grid.cell_y;
   add_relief(run, sheet);
-  const NamedRasters named(folder, run, hazard);
-  sheet.notes.insert(sheet.notes.end(), named.missing().begin(), named.missing().end());
-  std::vector<std::string> unnamed;
+  sheet.notes.insert(sheet.notes.end(), named.notes().begin(), named.notes().end());
   for (const Shown& shown : kShown)
-    for (const std::string& name : names_in(folder, shown))
-      if (!named.contains(name + ".tif"))
-        unnamed.push_back(name + ".tif");
-      else if (sheet.maps.size() < kMostMaps)
+    for (const std::string& name : names_in(folder, shown)) {
+      if (!named.contains(name + ".tif")) continue;
+      if (sheet.maps.size() < kMostMaps)
         add_map(folder, name, shown, run, sheet);
       else
         sheet.notes.push_back(name + ".tif: is not shown, as there are " + std::to_string(kMostMaps) + " maps already");
-  note_unnamed(unnamed, hazard.has_value(), sheet);
+    }
   if (const std::string classes = "hazard_class.tif"; named.contains(classes) && fs::exists(folder / classes))
     add_undecided(folder, run, sheet);
   return sheet;

@@ -8,6 +8,7 @@
 #include "io/gdal/map_outlines.hpp"
 #include "io/gdal/map_raster.hpp"
 #include "map_style.hpp"
+#include "named_files.hpp"
 #include "report_facts.hpp"
 
 namespace talus::io {
@@ -44,8 +45,7 @@ struct MapSheet {
   std::vector<std::string> notes;  ///< what is left out, and why
 };
 
-/// The maps of the rasters that are named in run.json or hazard.json. Others in the folder are of no record that says
-/// what they are; they are left out with a note, as are those that are named and not there.
-MapSheet read_sheet(const std::filesystem::path& folder, const RunFacts& run, const std::optional<HazardFacts>& hazard);
+/// The maps of the rasters that a record names.
+MapSheet read_sheet(const std::filesystem::path& folder, const RunFacts& run, const NamedFiles& named);
 
 }  // namespace talus::io

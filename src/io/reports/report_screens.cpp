@@ -5,9 +5,8 @@
 
 #include "io/gdal/csv_table.hpp"
 #include "io/results/screen_columns.hpp"
+#include "report_facts.hpp"
 #include "svg.hpp"
-#include "talus/base/error.hpp"
-#include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
@@ -76,7 +75,7 @@ Markup row_html(const ScreensPart::Row& row) {
 
 }  // namespace
 
-ScreensPart read_screens_part(const fs::path& folder, const RunFacts& run) {
+ScreensPart read_screens_part(const fs::path& folder) {
   ScreensPart part;
   const fs::path file = folder / "screens_summary.csv";
   std::error_code none;
@@ -92,12 +91,7 @@ ScreensPart read_screens_part(const fs::path& folder, const RunFacts& run) {
       part.note = "Only the first " + std::to_string(kMostScreens) + " screens are shown.";
       break;
     }
-    const std::string& screen = table.text(line, "screen");
-    if (std::ranges::find(run.screens, screen, &Screen::id) == run.screens.end())
-      throw InputError(file.string() + ": has the screen '" + shortened(screen, 60) +
-                       "', which run.json does not name: is the table of another run? Put the one of this run there, "
-                       "or run again");
-    part.rows.push_back({screen,
+    part.rows.push_back({table.text(line, "screen"),
                          quantity,
                          table.text(line, "unit"),
                          number("crossings"),

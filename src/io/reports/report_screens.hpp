@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "markup.hpp"
-#include "report_facts.hpp"
 
 namespace talus::io {
 
@@ -21,7 +20,7 @@ struct ScreensPart {
 };
 
 /// Throws InputError if a table is there and cannot be understood. No rows without screens.
-ScreensPart read_screens_part(const std::filesystem::path& folder, const RunFacts& run);
+ScreensPart read_screens_part(const std::filesystem::path& folder);
 Markup screens_html(const ScreensPart& part);
 
 }  // namespace talus::io

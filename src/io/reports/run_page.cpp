@@ -46,11 +46,12 @@ RunReport read_report(const fs::path& folder) {
   RunReport report;
   report.run = read_facts(folder);
   report.hazard = read_hazard_facts(folder, report.run);
-  report.sheet = read_sheet(folder, report.run, report.hazard);
+  const NamedFiles named(folder, report.run, report.hazard);
+  report.sheet = read_sheet(folder, report.run, named);
   if (report.run.of_profile) report.profile = read_profile_part(folder);
-  report.screens = read_screens_part(folder, report.run);
+  if (named.contains("screens_summary.csv")) report.screens = read_screens_part(folder);
   report.barriers = read_barrier_parts(folder, report.hazard);
-  report.objects = read_objects_part(folder);
+  if (named.contains("objects.csv")) report.objects = read_objects_part(folder);
   report.fit = read_fit_part(report.run);
   report.has_frequencies = fs::exists(folder / kHazardFile);
   return report;

@@ -512,11 +512,8 @@ static std::vector<std::string> distinct_names(const std::vector<SourceFeature>&
   std::map<std::string, std::size_t> held;
   for (const SourceFeature& f : features) ++held[f.name];
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < features.size(); ++i) {
-    const SourceFeature& f = features[i];
-    const std::string number = std::to_string(f.id >= 0 ? f.id : static_cast<std::int64_t>(i));
-    names.push_back(f.name.empty() ? number : f.name + (held[f.name] > 1 ? " (FID " + number + ")" : ""));
-  }
+  for (const SourceFeature& f : features)
+    names.push_back(f.name + (held[f.name] > 1 ? " (FID " + std::to_string(f.id) + ")" : ""));
   return names;
 }
 

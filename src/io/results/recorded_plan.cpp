@@ -22,20 +22,14 @@ struct RecordedPlan {
   std::uint32_t rounds = 1;
   std::string record;  // name of the file that says so
   std::string folder;  // where it lay when it was written; empty: not known
-  Json inputs = Json::array();
+  std::vector<InputFile> inputs = {};
 };
 
-/// What is not as it was in a run: a file that it read, or else the scenario.
-std::string changed_text(const Json& inputs) {
-  std::vector<std::string> changed;
-  for (const Json& input : inputs) {
-    const std::string path = input.value("path", ""), before = input.value("sha256", "");
-    const std::string now = before.empty() ? before : sha256_of_file(path);
-    if (now != before) changed.push_back(path + (now.empty() ? " is gone" : ""));
-  }
-  if (!changed.empty()) return "a file that it names has changed since the run (" + listed(changed) + ")";
-  return inputs.empty() ? "it, or a file that it names, has changed since the run"
-                        : "a setting in it has changed since the run";
+std::vector<InputFile> inputs_of(const Json& record) {
+  std::vector<InputFile> inputs;
+  for (const Json& one : record.value("inputs", Json::array()))
+    inputs.push_back({one.at("role"), one.at("path"), one.value("sha256", ""), {}});
+  return inputs;
 }
 
 /// Reads the scenario of a plan with the files that it was of: where they were, or else beside the results, if these
@@ -46,13 +40,18 @@ LoadedScenario load_same(const std::string& scenario, const RecordedPlan& plan) 
   flags.recorded.folder = plan.folder;
   const fs::path now = fs::absolute(scenario).lexically_normal().parent_path();
   const bool elsewhere = !plan.folder.empty() && fs::path(plan.folder) != now;
+  std::vector<std::string> changed;
   for (const bool beside_first : {false, true}) {
     if (beside_first && !elsewhere) break;
     flags.recorded.beside_first = beside_first;
     LoadedScenario loaded = load_scenario(flags);
+    changed = changed_inputs(plan.inputs, loaded.inputs);
     if (plan_checksum(loaded, plan.rounds) == plan.checksum) return loaded;
   }
-  throw InputError(scenario + ": " + changed_text(plan.inputs) +
+  const std::string what = plan.inputs.empty() ? ""
+                           : changed.empty()   ? " (a setting, or it was written by another version)"
+                                               : " (" + listed(changed) + ")";
+  throw InputError(scenario + ": it, or a file that it names, has changed since the run" + what +
                    ", so that the run cannot be repeated; run again (the checksums are in " + plan.record + ")");
 }
 
@@ -65,7 +64,7 @@ std::optional<RecordedPlan> plan_in(const fs::path& folder) {
     const auto read = [&]() -> std::optional<RecordedPlan> {
       const Json json = read_record(file);
       if (!json.contains("plan")) return std::nullopt;
-      RecordedPlan plan{json.at("plan"), 1, name, json.value("folder", ""), json.value("inputs", Json::array())};
+      RecordedPlan plan{json.at("plan"), 1, name, json.value("folder", ""), inputs_of(json)};
       if (plan.record == "run.json" && json.contains("rounds"))  // the scenario of a part is that of one round
         plan.rounds = static_cast<std::uint32_t>(whole_number(json["rounds"].at("done"), 1, kMostRounds));
       return plan;
@@ -83,7 +82,7 @@ std::optional<RecordedPlan> plan_in(const fs::path& folder) {
 LoadedScenario recorded_plan(const fs::path& folder, const std::string& plan) {
   const std::optional<RecordedPlan> recorded = plan_in(folder);
   return load_same((folder / "scenario.toml").string(), {plan, 1, "run.json", recorded ? recorded->folder : "",
-                                                         recorded ? recorded->inputs : Json::array()});
+                                                         recorded ? recorded->inputs : std::vector<InputFile>()});
 }
 
 LoadedScenario recorded_or_own_plan(const std::string& scenario) {

@@ -114,7 +114,7 @@ std::string guess_warning(std::span<const Preset* const> presets) {
 }
 
 std::string rare_class_warning(const Scenario& scenario) {
-  constexpr double kFew = 20.0, kNone = 1.0;  // blocks of a class in one round
+  constexpr double kFew = 20.0, kNone = 5.0;  // blocks of a class in one round
   const std::vector<double> frequencies = class_frequencies(scenario);
   const auto& classes = scenario.blocks.classes;
   if (frequencies.size() < 2 || frequencies.size() != classes.size()) return {};
@@ -127,10 +127,7 @@ std::string rare_class_warning(const Scenario& scenario) {
     if (frequencies[i] > 0.0 && drawn < kFew)
       rare.push_back(metres(classes[i].diameter) + " (" + percent(frequencies[i] / events) + " of the events, about " +
                      with_digits(drawn, 2) + " of " + std::to_string(scenario.released()) + " blocks in a round" +
-                     (drawn < kNone ? ": most likely none, so that its " + with_digits(frequencies[i], 3) +
-                                          " events per year are in the total and in no map"
-                                    : "") +
-                     ")");
+                     (drawn < kNone ? ": if there is none, its events are in the total and in no map" : "") + ")");
   }
   if (rare.empty()) return {};
   return std::string(kSizeWarning) + std::string(kRareClasses) + joined(rare) +

@@ -180,7 +180,8 @@ std::vector<double> class_factors(const Scenario& s, const std::vector<double>& 
   const double events = std::accumulate(frequencies.begin(), frequencies.end(), 0.0);
   refuse("the class of " + metres(light.diameter) + " has the weight " + text_of(light.weight) +
          ", far too small for its " + percent(frequencies[c] / events) + " of the events: give it " +
-         with_digits(light.weight * factors[c] / kComfortable, 2) + " or more (a weight changes no frequency)");
+         with_digits(light.weight * factors[c] / kComfortable, 2) +
+         " or more: a weight says only how many blocks are drawn");
 }
 
 double power_of_two_above(double value) {

@@ -5,7 +5,6 @@
 
 #include "talus/base/random.hpp"
 #include "talus/fit/calibrate/calibrate.hpp"
-#include "talus/fit/diagnose/dispersion.hpp"
 #include "talus/fit/diagnose/energy_component.hpp"
 #include "talus/fit/diagnose/property_test.hpp"
 #include "talus/fit/diagnose/residual_table.hpp"
@@ -95,8 +94,7 @@ void measure(Campaign& c, const std::vector<BlockRuns>& runs, std::uint32_t draw
 
 void print_measured(const Study& s) {
   std::vector<double> a(s.campaign.blocks.size(), kNotGiven);
-  std::vector<bool> used(a.size(), false);
-  for (const std::size_t b : s.rows) a[b] = s.energy.of_measured(b), used[b] = true;
+  for (const std::size_t b : s.rows) a[b] = s.energy.of_measured(b);
   const PropertyTest p = property_test(s.campaign, a, {}, 1);
   std::printf("property: %zu blocks, %zu rocks, by rock %d, sites %zu: F %.2f, p of F %.2g, permuted p %.4g of %zu%s\n",
               p.blocks, p.rocks, p.by_rock, p.sites, p.regression.f, p.regression.p_of_f, p.regression.permuted.p_value,
@@ -106,10 +104,6 @@ void print_measured(const Study& s) {
                 p.slopes[i].p_value);
   const DayTest d = day_test(s.campaign, a, {}, 1);
   if (d.tested) std::printf("day: %zu days, p %.4g\n", d.days.size(), d.regression.permuted.p_value);
-  const DispersionTest w = dispersion_test(s.campaign, s.space, s.runs, used, 2000, 1);
-  std::printf("dispersion: p %.4g\n", w.p_value);
-  for (const DispersionRow& row : w.rows)
-    std::printf("  %s: %.2f (expected %.2f), p %.4g\n", row.what.c_str(), row.statistic, row.expected, row.p_value);
 }
 
 /// Data of the model, the ground fitted to them anew, and the tests: does the fit change their size?
@@ -120,8 +114,7 @@ void refitted(const Campaign& campaign, const Model& model, const std::vector<Bl
   for (const std::size_t b : rows) used[b] = true;
   const auto free =
       ground_parameters(c, model, std::vector<std::string>{"theta_scale", "Et50"}, touched_zones(c, truth));
-  int property[2] = {0, 0}, dispersion[2] = {0, 0};
-  double variance[2] = {0.0, 0.0};
+  int property[2] = {0, 0};
   for (int set = 0; set < sets; ++set) {
     measure(c, truth, static_cast<std::uint32_t>(set));
     FitOptions how;
@@ -137,16 +130,12 @@ void refitted(const Campaign& campaign, const Model& model, const std::vector<Bl
       DiagnosisRules rules;
       rules.arrangements = 1000;
       property[k] += property_test(c, a, rules, set).regression.permuted.p_value <= 0.05;
-      const DispersionTest w = dispersion_test(c, space, runs, used, 500, set);
-      dispersion[k] += w.p_value <= 0.05;
-      variance[k] += w.rows.front().statistic / sets;
     }
   }
   std::printf("%zu parameters of the ground, %zu blocks\n", free.size(), rows.size());
   for (int k = 0; k < 2; ++k)
-    std::printf("%s: p <= 0.05 of %d sets: property %d, dispersion %d; mean variance of the run-out's z %.3f\n",
-                k == 0 ? "the model that made the data" : "the ground fitted to each set", sets, property[k],
-                dispersion[k], variance[k]);
+    std::printf("%s: p <= 0.05 of %d sets: property %d\n",
+                k == 0 ? "the model that made the data" : "the ground fitted to each set", sets, property[k]);
 }
 
 }  // namespace

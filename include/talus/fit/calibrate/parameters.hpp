@@ -30,7 +30,7 @@ struct Parameter {
 
   double value(double z) const;
   double z(double value) const;
-  /// A place z, or the bound that it is beyond.
+  /// z, cut to the bounds.
   double within(double place) const;
 };
 

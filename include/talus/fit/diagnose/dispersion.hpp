@@ -7,7 +7,7 @@ namespace talus {
 struct DispersionRow {
   std::string what;        ///< "runout", "lateral", "speed", ..., "runout beyond P95"
   double statistic = 1.0;  ///< variance of z within groups; of a tail the share of the blocks (0.05 if all is right)
-  double expected = 1.0;   ///< mean of the same over data sets drawn from the model
+  double expected = 1.0;   ///< mean of the same over data sets without an effect
   double p_value = 1.0;    ///< among those data sets; of a variance two-sided, of a tail one-sided
 };
 
@@ -15,7 +15,7 @@ struct DispersionRow {
 struct DispersionTest {
   std::vector<DispersionRow> rows;  ///< in the order of the observables, the tail last
   double p_value = 1.0;             ///< of the rarest row, corrected for their number
-  bool tested = false;              ///< false: too few blocks
+  bool tested = false;              ///< false: too few blocks, or no data sets
 };
 
 /// The scatter of a data set, by kind of quantity: the mean square of the places z less their mean over the blocks of
@@ -28,7 +28,8 @@ class Scatters {
   Scatters(const Campaign& campaign, const ResidualSpace& space, const std::vector<std::size_t>& blocks,
            const Eigen::MatrixXd& measured);
 
-  /// @param residuals  components x blocks. @return by kind: the variance, of a tail the share
+  /// @param residuals  components x blocks. @return by kind: the variance, of a tail the share; 1 and 0 where nothing
+  /// of a kind was seen
   Eigen::VectorXd of(const Eigen::MatrixXd& residuals) const;
 
   /// A kind of quantity.
@@ -44,17 +45,11 @@ class Scatters {
   std::vector<std::size_t> groups_;  // by block
 };
 
-/// Scatters of data sets, with the scores by which a fit would move the ground.
-struct ScatteredSets {
-  Eigen::MatrixXd scatters;  ///< kinds x sets
-  Eigen::MatrixXd scores;    ///< free parameters x sets
-};
-
-/// Compares the measured scatter with that of data sets without an effect. Of each the part that goes with the scores
-/// of the free parameters is taken out (a regression over the drawn sets): another ground would explain it.
+/// Compares the measured scatter with that of data sets without an effect.
 ///
-/// @param measured  one set
-DispersionTest dispersion_test(const std::vector<Scatters::Kind>& kinds, const ScatteredSets& drawn,
-                               const ScatteredSets& measured);
+/// @param drawn     kinds x sets
+/// @param measured  by kind
+DispersionTest dispersion_test(const std::vector<Scatters::Kind>& kinds, const Eigen::MatrixXd& drawn,
+                               const Eigen::VectorXd& measured);
 
 }  // namespace talus

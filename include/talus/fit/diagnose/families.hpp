@@ -15,7 +15,7 @@ struct FamilyInput {
   const ResidualSpace& space;
   const std::vector<BlockRuns>& runs;    ///< of which `space` was made
   const std::vector<bool>& rows;         ///< the blocks that are used
-  const ScoreTest& score_test;           ///< of the same model
+  const ScoreTest& score_test;           ///< where the same model has settled
   std::span<const std::string> found{};  ///< effects that the model has, which are no candidates any more
 };
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/expect.hpp"
 #include "talus/base/sample.hpp"
 #include "talus/fit/campaign/observe.hpp"
 #include "talus/fit/score/fair_scores.hpp"
@@ -46,9 +47,12 @@ double mean_over(std::span<const GroupScore> groups, const Value& value) {
     if (const double v = value(g); !std::isnan(v)) sum += groups[g].weight * v, weights += groups[g].weight;
   return weights > 0.0 ? sum / weights : kNotGiven;
 }
-/// Their weighted mean score.
+/// Their weighted mean score, of which none is NaN.
 inline double mean_over(std::span<const GroupScore> groups) {
-  return mean_over(groups, [groups](std::size_t g) { return groups[g].score; });
+  return mean_over(groups, [groups](std::size_t g) {
+    TALUS_EXPECT(!std::isnan(groups[g].score), "a group has rows, and each a score");
+    return groups[g].score;
+  });
 }
 
 /// Fewest simulated values with which a row is scored; below, it scores as the climatology of the fitting rows.

@@ -91,7 +91,7 @@ Campaign scattered(const Measured& m, double factor) {
   return c;
 }
 
-/// The test of the dispersion of all blocks, with data sets of the model's own trials and no free parameter.
+/// The test of the dispersion of all blocks, with data sets of the model's own trials.
 DispersionTest dispersion_of(const Campaign& c, const std::vector<BlockRuns>& runs, int sets, std::uint64_t seed) {
   const ResidualSpace space(c, runs);
   std::vector<std::size_t> blocks(c.blocks.size());
@@ -108,8 +108,7 @@ DispersionTest dispersion_of(const Campaign& c, const std::vector<BlockRuns>& ru
     }
     drawn_scatters.col(set) = scatters.of(drawn);
   }
-  return dispersion_test(scatters.kinds(), {drawn_scatters, Eigen::MatrixXd(0, sets)},
-                         {scatters.of(measured), Eigen::MatrixXd(0, 1)});
+  return dispersion_test(scatters.kinds(), drawn_scatters, scatters.of(measured));
 }
 
 TEST(Dispersion, FindsAScatterThatIsTooLargeOrTooSmall) {
@@ -152,26 +151,6 @@ TEST(Dispersion, HasItsSizeOnTheModelsOwnTrials) {
   }
   EXPECT_LE(alarms, kSets * 0.05 + 5.0 * std::sqrt(kSets * 0.05 * 0.95));
   EXPECT_NEAR(halves, kSets * 0.5, 5.0 * std::sqrt(kSets * 0.25));
-}
-
-/// By hand: the logarithm of the variance is the score of a free parameter plus a little noise. A variance of e^3 with
-/// a score of 3 is what another ground would give; with a score of 0 it is not.
-TEST(Dispersion, WhatAnotherGroundWouldExplainIsTakenOut) {
-  constexpr int kSets = 400;
-  ScatteredSets drawn{Eigen::MatrixXd(1, kSets), Eigen::MatrixXd(1, kSets)};
-  for (int set = 0; set < kSets; ++set) {
-    const double score = std::sin(1.0 + set), noise = 0.1 * std::cos(2.0 + 3.0 * set);
-    drawn.scores(0, set) = score;
-    drawn.scatters(0, set) = std::exp(score + noise);
-  }
-  const std::vector<Scatters::Kind> kinds{{"runout", {0}, false}};
-  const auto p_of = [&](double log_variance, double score) {
-    const Eigen::MatrixXd variance = Eigen::MatrixXd::Constant(1, 1, std::exp(log_variance));
-    return dispersion_test(kinds, drawn, {variance, Eigen::MatrixXd::Constant(1, 1, score)}).p_value;
-  };
-  EXPECT_GT(p_of(3.0, 3.0), 0.5);
-  EXPECT_DOUBLE_EQ(p_of(3.0, 0.0), 1.0 / 401.0);
-  EXPECT_DOUBLE_EQ(p_of(0.3, 0.0), 1.0 / 401.0) << "three times the noise, though scores of 0.3 are common";
 }
 
 TEST(Families, EveryEffectIsInOne) {

@@ -45,7 +45,14 @@ TEST(BlockSizes, AClassThatIsHardlyDrawnIsSaid) {
     EXPECT_EQ(!text.empty(), said) << weight << text;
   }
   const std::string text = rare_class_warning(scenario);
-  EXPECT_NE(text.find("3 m (10 % of the events, about 0.6 of 1200 blocks in a round)"), std::string::npos) << text;
+  EXPECT_NE(
+      text.find(
+          "3 m (10 % of the events, about 0.6 of 1200 blocks in a round: if there is none, its events are in the total "
+          "and in no map)"),
+      std::string::npos)
+      << text;
+  scenario.blocks.classes[1].weight = 0.01;
+  EXPECT_NE(rare_class_warning(scenario).find("blocks in a round): give"), std::string::npos) << "some are drawn";
   scenario.blocks.classes[1].frequency = 0.0;  // it carries no events
   EXPECT_EQ(rare_class_warning(scenario), "");
 }

@@ -55,7 +55,8 @@ TEST(AnnualWeights, NumbersTooSmallToReckonWithAreRefused) {
   s.frequency.total = 1.0;
   s.frequency.class_shares = true;
   s.blocks.classes = {{{1.0, 1.0}, 1.0, 0.1}, {{3.0, 3.0}, 1e-160, 0.9}};
-  refused(s, "the class of 3 m has the weight 1e-160, far too small for its 90 % of the events: give it 0.0009 or more");
+  refused(s,
+          "the class of 3 m has the weight 1e-160, far too small for its 90 % of the events: give it 0.0009 or more");
 }
 
 TEST(AnnualWeights, AFeaturesFrequencyIsDividedOverItsCells) {
