@@ -43,8 +43,11 @@ stage "packages in a bare Debian"
 cat "$package_log"
 stage "asan: tests of core and files"
 tools/scripts/checks/sanitized_tests.sh build/asan
-stage "the same bytes from gcc with optimisation and from clang without"
+stage "the same bytes from gcc with optimisation and from clang without; beside it clang-tidy on the physics"
+tidy_log="$(mktemp)"  # on all sources before a release: tools/scripts/checks/tidy.sh
+tools/scripts/checks/tidy.sh src/physics > "$tidy_log" 2>&1 &
+tidy=$!
 tools/scripts/checks/same_bytes.sh build/release/talus build/asan/talus
-stage "clang-tidy on the physics"  # on all sources before a release: tools/scripts/checks/tidy.sh
-tools/scripts/checks/tidy.sh src/physics
+wait "$tidy" || { cat "$tidy_log"; exit 1; }
+cat "$tidy_log"
 stage "done"

@@ -599,10 +599,15 @@ class OffTheDem(InputCase):
         self.assertIn("features where the DEM has no heights, which release nothing: FID 2 (all)", said)
 
     def test_a_dem_that_counts_to_the_west_is_refused(self):
-        """EPSG:2048, Hartebeesthoek94 / Lo19: the axes point west and south."""
-        gdal.Translate(self.path("lo19.tif"), self.path("dem.tif"), outputSRS="EPSG:2048", outputBounds=[1000, 3700300, 1300, 3700000])
-        self.fails(2, "lo19.tif: coordinates count to the west and south (EPSG:2048", "must count to the east and north",
-                   arguments=["check", "--dem", self.path("lo19.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "1"])
+        """EPSG:2048 and 5513 count to the west and south, 3145 to the north and west; 5514 is 5513 with a minus, 2180 names its
+        northing first, the axes of 3995 run along meridians."""
+        for code, told in (("2048", "west and south"), ("5513", "south and west"), ("3145", "north and west"),
+                           ("5514", ""), ("2180", ""), ("3995", ""), ("31467", "")):
+            with self.subTest(code):
+                gdal.Translate(self.path("grid.tif"), self.path("dem.tif"), outputSRS=f"EPSG:{code}", outputBounds=[1000, 3700300, 1300, 3700000])
+                done = self.call("check", "--dem", self.path("grid.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "1")
+                self.assertEqual(f"grid.tif: coordinates count to the {told} (EPSG:{code}" in done.stderr, told != "", done.stderr)
+                self.assertEqual("must count to the east and north" in done.stderr, told != "", done.stderr)
 
     def test_degrees_and_exchanged_axes_are_seen(self):
         """In a table without a system, which is taken in that of the DEM."""
