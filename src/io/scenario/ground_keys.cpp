@@ -53,6 +53,12 @@ std::optional<std::string> fault_of_code(const std::string& text) {
 
 void lay_preset_over_include(ScenarioSpec& spec) {
   if (spec.origin("ground.default") != kPresetFlag) return;
+  std::vector<std::string> lost;
+  for (const auto& [key, origin] : spec.default_ground.own) lost.push_back(key);
+  if (!lost.empty())
+    spec.warnings.push_back("flag --preset = '" + spec.default_ground.preset +
+                            "' takes the place of the default ground of " + spec.include.path + ", with its " +
+                            joined(lost) + ": leave the flag out to keep them");
   spec.default_ground.ground = find_preset(spec.default_ground.preset).ground;
   spec.default_ground.own.clear();
 }
