@@ -114,7 +114,8 @@ std::string guess_warning(std::span<const Preset* const> presets) {
 }
 
 std::string rare_class_warning(const Scenario& scenario) {
-  constexpr double kFew = 20.0, kNone = 5.0;  // blocks of a class in one round
+  constexpr double kFew = 20.0;  // blocks of a class in one round
+  constexpr double kNone = 3.0;  // below it a round has none of them in more than 5 % of the cases
   const std::vector<double> frequencies = class_frequencies(scenario);
   const auto& classes = scenario.blocks.classes;
   if (frequencies.size() < 2 || frequencies.size() != classes.size()) return {};
