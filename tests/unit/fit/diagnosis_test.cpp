@@ -473,6 +473,36 @@ TEST(SettledModel, IsTheTrueOneOnAverageAndLeavesNoFalseAlarm) {
   EXPECT_GT(of_scatter_before, of_scatter);
 }
 
+/// The test has the same bits for any number of threads: of a few blocks, so that it runs with sanitizers, too.
+TEST(SettledModel, HangsNotOnTheThreads) {
+  Campaign c = slope_campaign(12);
+  const Model model = model_of_preset(c, "upper-talus-3d");
+  measure(c, model, 3);
+  const auto free = ground_of(c, model);
+  const std::vector<bool> rows(c.blocks.size(), true);
+  const Eigen::VectorXd z = Eigen::VectorXd::Constant(2, 0.3);
+  const Model moved = model_at(model, free, z);
+  const ObserveOptions of_base{40, 7, 1000, 0, {}, {}};
+  const auto runs = observe(c, moved, of_base);
+  std::vector<Candidate> list = candidates_of(c, moved, runs, {});
+  std::erase_if(list, [](const Candidate& x) { return x.effect != "block-mass"; });
+  const auto settled = [&](int threads) {
+    ScoreTestOptions how = quick();
+    how.trials = 16, how.replicates = 100, how.threads = threads, how.rules.open_grounds = 8;
+    return settled_test(c, {moved, free, z, runs}, list, rows, how,
+                        [&](const Model& m) { return observe(c, m, of_base); });
+  };
+  const SettledTest one = settled(1), three = settled(3);
+  EXPECT_EQ(one.model.z, three.model.z);
+  EXPECT_EQ(one.test.effects.front().best.statistic, three.test.effects.front().best.statistic);
+  ASSERT_TRUE(one.test.dispersion.tested);
+  ASSERT_EQ(one.test.dispersion.rows.size(), three.test.dispersion.rows.size());
+  for (std::size_t i = 0; i < one.test.dispersion.rows.size(); ++i) {
+    EXPECT_EQ(one.test.dispersion.rows[i].statistic, three.test.dispersion.rows[i].statistic);
+    EXPECT_EQ(one.test.dispersion.rows[i].p_value, three.test.dispersion.rows[i].p_value);
+  }
+}
+
 /// An effect that made the data is still found where the ground has settled, and the ground that goes with it counts
 /// from the fit.
 TEST(SettledModel, LeavesAnEffectToBeFound) {

@@ -13,7 +13,7 @@ long+=":BoundsOfReached.Cover*:LogHistogram.HoldsTheBound*:ScreenFinder.APathVer
 long+=":PercentileBounds.Cover*:AnnualFrequency.BoundsOfStrataCover*:ForestStems.TheRateIsThatOfEachCell"
 long+=":Random.NeighboursAreIndependent:Random.TheBattery*:CrossingsPerYear.BoundsOfPieces*:Intervals.*Cover*:VisitBatch.FlightsOver*"
 long+=":RestInRoughness.KnowsNoDirection:RestInRoughness.MoreBlocks*:TreeList.TheIndexFinds*:TreeList.APlantedStrip*:Energy.NeverGrows*"
-long+=":*BarrierRun.NothingBehind*:*BarrierRun.ZeroHeight*:Pieces.ABlockOfWhich*"
+long+=":*BarrierRun.NothingBehind*:*BarrierRun.ZeroHeight*:Pieces.ABlockOfWhich*:SettledModel.IsTheTrue*:SettledModel.LeavesAn*"
 export LSAN_OPTIONS="suppressions=$PWD/tests/leaks_of_libomp.txt:print_suppressions=0"
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
