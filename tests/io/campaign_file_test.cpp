@@ -103,6 +103,15 @@ TEST_F(Campaigns,
   EXPECT_TRUE(loaded.warnings[0].ends_with("of which the first one counts: lines 4")) << loaded.warnings[0];
 }
 
+/// Three samples, the farthest one first in the file: a block meets them in the order of their distance.
+TEST_F(Campaigns, SamplesAreReadNearestFirst) {
+  write_text("samples.csv", "id,x,y,speed_ms\na,600050,5200072,9\na,600050,5200036,7\na,600050,5200052,8\n");
+  const LoadedCampaign loaded = read("samples = \"samples.csv\"\n");
+  std::vector<double> speeds;
+  for (const Sample& sample : loaded.campaign.blocks[0].samples) speeds.push_back(sample.speed);
+  EXPECT_EQ(speeds, (std::vector<double>{7.0, 8.0, 9.0}));
+}
+
 TEST_F(Campaigns, MassesInAnotherUnitAreSaid) {
   const std::string head = "id,x,y,release_height_m,mass_kg,L1_m,L2_m,L3_m\n", sphere = "b,600060,5200040,1,500,,,\n";
   const auto warnings = [&](const std::string& mass) {

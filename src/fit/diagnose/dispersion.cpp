@@ -143,7 +143,7 @@ DispersionTest dispersion_test(const std::vector<Scatters::Kind>& kinds, const M
     const VectorXd of_sets = scaled(drawn.row(row).transpose(), kinds[k].tail);
     rarity.push_back(rarity_of(of_sets, of_sets, kinds[k].tail));
     own.push_back(rarity_of(scaled(measured.segment(row, 1), kinds[k].tail), of_sets, kinds[k].tail)[0]);
-    test.rows.push_back({kinds[k].what, measured[row], drawn.row(row).mean(), 1.0});
+    test.rows.push_back({kinds[k].what, measured[row], 1.0});
   }
   const Corrected p = corrected(rarity, own);
   for (std::size_t k = 0; k < kinds.size(); ++k) test.rows[k].p_value = p.effects[k];

@@ -15,7 +15,7 @@ class NamedFiles {
  public:
   NamedFiles(const std::filesystem::path& folder, const RunFacts& run, const std::optional<HazardFacts>& hazard);
 
-  /// Of a run that has no list of its files all count as named.
+  /// Whether a record names a file; true for every file of a run without a list of them.
   bool contains(const std::filesystem::path& name) const { return names_.empty() || names_.contains(name.string()); }
   const std::vector<std::string>& notes() const { return notes_; }
 

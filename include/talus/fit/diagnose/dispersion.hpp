@@ -7,8 +7,7 @@ namespace talus {
 struct DispersionRow {
   std::string what;        ///< "runout", "lateral", "speed", ..., "runout beyond P95"
   double statistic = 1.0;  ///< variance of z within groups; of a tail the share of the blocks (0.05 if all is right)
-  double expected = 1.0;   ///< mean of the same over data sets without an effect
-  double p_value = 1.0;    ///< among those data sets; of a variance two-sided, of a tail one-sided
+  double p_value = 1.0;    ///< among data sets without an effect; of a variance two-sided, of a tail one-sided
 };
 
 /// Test whether the model scatters too much or too little, or has too short a tail.

@@ -117,10 +117,9 @@ TEST(Dispersion, FindsAScatterThatIsTooLargeOrTooSmall) {
   EXPECT_LE(wide.p_value, 0.01);
   EXPECT_LE(narrow.p_value, 0.01);
   EXPECT_EQ(wide.rows[0].what, "runout");
-  EXPECT_GT(wide.rows[0].statistic, wide.rows[0].expected);
-  EXPECT_LT(narrow.rows[0].statistic, narrow.rows[0].expected);
+  EXPECT_GT(wide.rows[0].statistic, 1.0);
+  EXPECT_LT(narrow.rows[0].statistic, 1.0);
   EXPECT_EQ(wide.rows.back().what, "runout beyond P95");
-  EXPECT_NEAR(wide.rows.back().expected, 0.05, 0.02);
 }
 
 /// 24 blocks that all went beyond everything simulated: about their mean none of them is beyond anything.
@@ -134,7 +133,6 @@ TEST(Dispersion, OfBlocksThatAllWentFartherTheWholeTailIsBeyondP95) {
   ASSERT_EQ(test.rows.back().what, "runout beyond P95");
   EXPECT_DOUBLE_EQ(test.rows.back().statistic, 1.0);
   EXPECT_DOUBLE_EQ(test.rows.back().p_value, 1.0 / 501.0);
-  EXPECT_NEAR(test.rows.back().expected, 0.05, 0.02);
 }
 
 /// One trial of each block is data of the right model: the p-values are uniform.
