@@ -162,13 +162,16 @@ BarrierDesign design_barrier(std::span<const LineCrossing> crossings, const Desi
   const double reach = factors.trajectory * factors.topography;
   d.speed_percentile = percentile_of(crossings, factors.percentile, &LineCrossing::speed);
   d.height_percentile = percentile_of(crossings, factors.percentile, &LineCrossing::height);
+  d.energy_percentile = percentile_of(crossings, factors.percentile, &LineCrossing::energy);
   d.speed = d.speed_percentile * reach;
   d.mass = block.volume * block.density * factors.volume * factors.density;
   d.energy = 0.5 * d.mass * d.speed * d.speed;
   d.sel = factors.sel * d.energy;
   d.mel = factors.mel * d.energy;
-  d.freeboard = std::max(factors.freeboard, 0.5 * diameter_of(block.volume));
+  const double diameter = diameter_of(block.volume);
+  d.freeboard = std::max(factors.freeboard, 0.5 * diameter);
   d.height = d.height_percentile * reach + d.freeboard;
+  d.top = d.height_percentile * reach + diameter;
   return d;
 }
 

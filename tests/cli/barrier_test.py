@@ -71,6 +71,7 @@ class Design(Case):
         self.assertAlmostEqual(values["MEL"], 1.3 * values["E_d"], 9)
         self.assertAlmostEqual(values["f_min"], 0.5 * (12.0 / math.pi)**(1.0 / 3.0), 9)
         self.assertAlmostEqual(values["h_i"], 0.96 * 1.122 + values["f_min"], 9)
+        self.assertAlmostEqual(values["h_top"], 0.96 * 1.122 + 2.0 * values["f_min"], 9)
         # 101 crossings over 20 m: 100 of them (99 %) are 19.8 m wide; 25 a bin of 5 m, more than 1 % of 1000
         width = report["containment"]
         self.assertAlmostEqual(width["shortest"]["width_m"], 19.8, 6)
@@ -80,6 +81,10 @@ class Design(Case):
         rows = {row["name"]: row for row in self.read_table("out/barrier_road.csv")}
         self.assertAlmostEqual(float(rows["h_i"]["value"]), values["h_i"], 4)
         self.assertEqual(float(rows["h_i"]["share"]), 0.0)
+        for quantity, name in (("jump height", "h_i"), ("energy", "SEL")):  # evenly spaced: no Weibull law
+            (fit,) = [r for r in report["reliability"] if r["quantity"] == quantity]
+            self.assertEqual(rows[name]["weibull"] == "", not fit["agrees"], quantity)
+        self.assertEqual(text.count(" of the law, "), 2)  # SEL and MEL
 
     def test_stretches(self):
         """The line of 100 m in four of 25 m; the blocks cross from 10 to 30 m, the heaviest in the second."""
@@ -139,6 +144,17 @@ class Design(Case):
         sel = f"{0.5e-3 * 1.2 * 2500 * 1.1 * 12.1**2:.4g}"  # of the whole line: the slow stretch needs a quarter of it
         self.assertEqual(note, f"one design for the whole line is too low: h_i ({whole} m) on 25.0-50.0 m, which need up to {highest} m."
                          f" Give each stretch its own design, or the whole line SEL {sel} kJ and h_i {highest} m")
+
+    def test_what_is_too_rare_for_a_design_is_said_where_it_exceeds_that_of_the_line(self):
+        """Beyond 25 m come 5 blocks, one of them 30 m high, one of 3000 kg x (40 m/s)^2 / 2 = 2400 kJ."""
+        self.rows = [(0, i, "road", 10.0, 0.1, 3000.0, 10.0 + 0.1 * i) for i in range(101)]
+        self.save()
+        self.assertFalse([n for n in self.design()[1]["notes"] if "too few crossings for a design" in n])
+        self.rows += [(0, 101, "road", 10.0, 30.0, 3000.0, 30.0), (0, 102, "road", 40.0, 0.1, 3000.0, 60.0)]
+        self.rows += [(0, 103 + i, "road", 10.0, 0.1, 3000.0, 80.0) for i in range(3)]
+        self.save()
+        (note,) = [n for n in self.design()[1]["notes"] if "too few crossings for a design" in n]
+        self.assertIn("blocks come above SEL on 50.0-75.0 m (up to 2400 kJ), above h_i on 25.0-50.0 m (up to 30 m)", note)
 
     def test_a_block_larger_than_those_that_give_the_speed_is_said(self):
         """100 blocks of 3 t at 20 m/s, one of 30 t at 1 m/s: together 0.5 x 30 t x (20 m/s)^2 = 6000 kJ, which no block has."""
@@ -725,6 +741,12 @@ class Walk(Case):
             self.assertIn("barriers: joule (150000 kJ, 4 m), high (150 kJ, 30 m), named (20000 kJ, 3 m): above 15000 kJ or 12 m", told)
         self.nets(*nets[2:])
         self.assertNotIn(words, self.run_well("check", self.scenario()).stdout)
+
+    def test_one_that_is_lower_than_the_largest_block_is_said(self):
+        """The blocks have diameters of 0.6 to 1.2 m."""
+        self.nets((125.0, "low", 1.1, 1000.0), (120.0, "high", 1.2, 1000.0), (115.0, "off", 0.0, 1000.0))
+        text = self.run_well("check", self.scenario()).stdout
+        self.assertIn("barriers: low (1.1 m): lower than the largest block, 1.2 m", text)
 
     def test_one_that_holds_nothing_is_said(self):
         """A number that was not filled in is 0 in many a layer."""

@@ -359,16 +359,22 @@ class Content(Report):
         z = heights()
         z[28:32, 50:54] = -9999.0  # no height from x = 247.5 to 272.5 and y = 137.5 to 162.5
         write_dem(self.path("dem.tif"), z, nodata=-9999.0)
-        write_features(self.path("houses.gpkg"), "houses", [(box(100, 100, 12, 9), ["EGID 7"]), (box(250, 140, 20, 20), ["EGID 8"])],
+        write_features(self.path("houses.gpkg"), "houses", [(box(100, 100, 12, 9), ["EGID 7"]), (box(250, 140, 20, 20), ["EGID 8"]),
+                                                                  (box(5, 290, 5, 5), ["EGID 9"])],
                        [("id", ogr.OFTString)])
-        self.run_scenario("out")
+        self.run_scenario("out", "--trajectories", "3")
         self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "-q")
         source = self.page().source
         on_map = re.findall(r"<text[^>]*>(EGID \d|\d)</text>", source[:source.index("</defs>")])
-        self.assertEqual(sorted(name for name in on_map if name.startswith("EGID")), ["EGID 7", "EGID 8"])
-        first, second = re.findall(r"<tr><td>EGID.*", source)
+        self.assertEqual(sorted(name for name in on_map if name.startswith("EGID")), ["EGID 7", "EGID 8", "EGID 9"])
+        first, second, third = re.findall(r"<tr><td>EGID.*", source)
         self.assertEqual(first, "<tr><td>EGID 8</td><td colspan='6'>not assessed: the DEM has no height there</td></tr>")
         self.assertTrue(second.startswith("<tr><td>EGID 7</td><td class='n'>"), second)
+        names, told = ["none", "residual", "low", "medium", "high"], {"EGID 7": second, "EGID 9": third}
+        for row in self.read_table("out/objects.csv")[::2]:
+            here, low, high = (names[int(row["hazard_class" + end])] for end in ("", "_lower", "_upper"))
+            self.assertEqual(low != high, row["object"] == "EGID 9")  # nothing came there, of too few blocks to say more
+            self.assertIn(f"<td>{here} [{low} to {high}]</td>" if low != high else f"<td>{here}</td>", told[row["object"]])
 
     def test_hostile_names_stay_text(self):
         road = f"road{HOSTILE}"

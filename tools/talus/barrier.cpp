@@ -378,7 +378,8 @@ void add_stretches(BarrierReport& report, std::span<const talus::LineCrossing> a
        talus::design_stretches(all, talus::stretch_edges(parts, report.longest), rule, report.factors))
     report.stretches.push_back({s, {}});
   if (const auto note = again_note(report, blocks)) report.notes.push_back(*note);
-  if (const auto note = talus::io::stretch_note(report)) report.notes.push_back(*note);
+  for (const auto& note : {talus::io::stretch_note(report), talus::io::undesigned_note(report)})
+    if (note) report.notes.push_back(*note);
 }
 
 /// A line where the volume that was given is far above those of the run, as where a mass was typed.

@@ -29,7 +29,7 @@ struct DesignBlock {
 /// A block, or a piece of one, where it crosses a line.
 struct LineCrossing {
   double speed = 0.0;                ///< [m/s]
-  double height = 0.0;               ///< vertical, ground to centre [m]
+  double height = 0.0;               ///< of its lowest point, vertical above the ground [m]
   double mass = 0.0;                 ///< [kg]
   double along = 0.0;                ///< distance from the start of the line [m]
   double weight = 1.0;               ///< events per year that it stands for, or 1 for every block; 0: it never falls
@@ -73,12 +73,14 @@ double effective_number(std::span<const LineCrossing> crossings);
 /// Design values of a barrier.
 struct BarrierDesign {
   double speed_percentile, height_percentile;  ///< v95 [m/s], h95 [m]
+  double energy_percentile;                    ///< E95, translational [J]
   double speed;                                ///< v_d = v95 gTr gDp [m/s]
   double mass;                                 ///< m_d = V rho gVol gG [kg]
   double energy;                               ///< E_d = 1/2 m_d v_d^2 [J]
   double sel, mel;                             ///< gE E_d [J]
   double freeboard;                            ///< f_min: half the block, at least DesignFactors::freeboard [m]
   double height;                               ///< h_i = h95 gTr gDp + f_min, of the interception, vertical [m]
+  double top;                                  ///< h_top = h95 gTr gDp + diameter, of the block's top, vertical [m]
 };
 
 /// @param crossings  not empty, any order; percentiles are by their weights

@@ -47,11 +47,13 @@ std::vector<DesignRow> design_rows(const BarrierReport& r) {
            "V x " + with_digits(r.block.density, 4) + " kg/m3 x gVol " + with_digits(f.volume, 4) + " x gG " +
                with_digits(f.density, 4)},
           {"E_d", d.energy * 1e-3, "kJ", "1/2 m_d v_d^2"},
+          {"E" + rank, d.energy_percentile * 1e-3, "kJ", "of the crossings, no part of the design"},
           {"SEL", d.sel * 1e-3, "kJ", "E_d x gE " + with_digits(f.sel, 4)},
           {"MEL", d.mel * 1e-3, "kJ", "E_d x gE " + with_digits(f.mel, 4)},
-          {"h" + rank, d.height_percentile, "m", "of the crossings, vertical, ground to centre"},
+          {"h" + rank, d.height_percentile, "m", "of the crossings, vertical, of the block's lowest point"},
           {"f_min", d.freeboard, "m", "half the block, at least " + with_digits(f.freeboard, 4) + " m"},
-          {"h_i", d.height, "m", "h" + rank + reach + " + f_min"}};
+          {"h_i", d.height, "m", "h" + rank + reach + " + f_min"},
+          {"h_top", d.top, "m", "h" + rank + reach + " + diameter: of the block's top"}};
 }
 
 /// A cell of a column: its text and at least one blank.
@@ -77,10 +79,13 @@ std::string reliability_text(const Reliability& r) {
                                       : "") +
                      "\n";
   for (const Reliability::Limit& l : r.limits)
-    text += "    " + cell(l.name, 6) + cell(with_digits(l.value, 4) + " " + r.unit, 14) + "exceeded by " +
-            cell(percent(l.exceeded.fitted) + " " + between_percents(l.exceeded.fitted_bounds), 28) + "of the law, " +
-            percent(l.exceeded.observed) + " " + between(l.exceeded.observed_bounds, 100.0) + " of the values\n" +
-            (l.per_year ? "          by frequency: " + frequency_text(l) + "\n" : "");
+    text +=
+        "    " + cell(l.name, 6) + cell(with_digits(l.value, 4) + " " + r.unit, 14) + "exceeded by " +
+        (r.fit.accepted()
+             ? cell(percent(l.exceeded.fitted) + " " + between_percents(l.exceeded.fitted_bounds), 28) + "of the law, "
+             : std::string()) +
+        percent(l.exceeded.observed) + " " + between(l.exceeded.observed_bounds, 100.0) + " of the values\n" +
+        (l.per_year ? "          by frequency: " + frequency_text(l) + "\n" : "");
   return text;
 }
 
@@ -130,6 +135,11 @@ Json reliability_of(const Reliability& r) {
           {"anderson_darling_5_percent", kAndersonDarling5},
           {"agrees", r.fit.accepted()},
           {"exceeded", std::move(limits)}};
+}
+
+/// ",0.01,0.005,0.02"
+std::string csv_share(double share, const Interval& bounds) {
+  return ',' + with_digits(share, 6) + ',' + with_digits(bounds.low, 6) + ',' + with_digits(bounds.high, 6);
 }
 
 /// "12 blocks cross it"; with pieces "40 crossings (blocks and pieces) of 12 blocks".
@@ -227,6 +237,7 @@ std::string barrier_text(const BarrierReport& r) {
           "\n\ndesign values\n";
   for (const DesignRow& row : design_rows(r))
     text += "  " + cell(row.name, 8) + cell(with_digits(row.value, 4) + " " + row.unit, 14) + row.from + "\n";
+  text += "  The net needs SEL or MEL in its certificate, not both: docs/barrier.md, \"Design values\".\n";
   text += std::string("\nprobability that a block") + (r.pieces() ? " or piece" : "") + " exceeds them, by " +
           r.values + " [95 %]\n";
   for (const Reliability& quantity : r.reliability) text += reliability_text(quantity);
@@ -276,17 +287,14 @@ std::string barrier_csv(const BarrierReport& r) {
   const std::string screen = csv_field(r.screen);
   for (const DesignRow& row : design_rows(r)) {
     text += screen + ',' + row.name + ',' + with_digits(row.value, 6) + ',' + row.unit;
-    const Exceedance* exceeded = nullptr;
+    std::string law = ",,,", share = ",,,";
     for (const Reliability& quantity : r.reliability)
-      for (const Reliability::Limit& limit : quantity.limits)
-        if (limit.name == row.name) exceeded = &limit.exceeded;
-    if (exceeded == nullptr)
-      text += ",,,,,,";
-    else
-      for (const double value : {exceeded->fitted, exceeded->fitted_bounds.low, exceeded->fitted_bounds.high,
-                                 exceeded->observed, exceeded->observed_bounds.low, exceeded->observed_bounds.high})
-        text += ',' + with_digits(value, 6);
-    text += '\n';
+      for (const Reliability::Limit& limit : quantity.limits) {
+        if (limit.name != row.name) continue;
+        if (quantity.fit.accepted()) law = csv_share(limit.exceeded.fitted, limit.exceeded.fitted_bounds);
+        share = csv_share(limit.exceeded.observed, limit.exceeded.observed_bounds);
+      }
+    text += law + share + '\n';
   }
   return text;
 }

@@ -53,16 +53,16 @@ const StretchDesign* highest_of(const BarrierReport& r, Value value) {
   return found;
 }
 
-/// Where a value of the whole line is too low: stretches side by side as one, "from-to m", and the value that is enough
-/// everywhere.
+/// Where the value of the whole line is too low: stretches side by side as one, "from-to m", and the value that is
+/// enough everywhere.
 struct Missing {
   std::vector<std::string> where;
   double highest;
 };
 
+/// @param value  of a stretch, to compare with that of the line; 0 where it has none
 template <class Value>
-Missing lack_of(const BarrierReport& r, Value value) {
-  const double line = std::invoke(value, r.design);
+Missing lack_of(const BarrierReport& r, double line, Value value) {
   Missing lack{{}, line};
   std::optional<Stretch> open;
   const auto close = [&] {
@@ -70,13 +70,14 @@ Missing lack_of(const BarrierReport& r, Value value) {
     open.reset();
   };
   for (const StretchRow& row : r.stretches) {
-    if (!row.values.design || !(std::invoke(value, *row.values.design) > line)) {
+    const double here = value(row.values);
+    if (!(here > line)) {
       close();
       continue;
     }
     if (!open) open = row.values.stretch;
     open->to = row.values.stretch.to;
-    lack.highest = std::max(lack.highest, std::invoke(value, *row.values.design));
+    lack.highest = std::max(lack.highest, here);
   }
   close();
   return lack;
@@ -249,7 +250,9 @@ std::optional<std::string> gap_note(double without_height) {
 }
 
 std::optional<std::string> stretch_note(const BarrierReport& r) {
-  const Missing sel = lack_of(r, &BarrierDesign::sel), height = lack_of(r, &BarrierDesign::height);
+  const Missing sel = lack_of(r, r.design.sel, [](const StretchDesign&s) { return s.design ? s.design->sel : 0.0; }),
+                height = lack_of(r, r.design.height,
+                                 [](const StretchDesign&s) { return s.design ? s.design->height : 0.0; });
   const std::string energies = kilojoules(sel.highest) + " kJ", heights = with_digits(height.highest, 3) + " m";
   std::vector<std::string> texts;
   if (!sel.where.empty())
@@ -262,6 +265,21 @@ std::optional<std::string> stretch_note(const BarrierReport& r) {
   std::string text = "one design for the whole line is too low: " + texts.front();
   if (texts.size() > 1) text += "; " + texts.back();
   return text + ". Give each stretch its own design, or the whole line SEL " + energies + " and h_i " + heights;
+}
+
+std::optional<std::string> undesigned_note(const BarrierReport& r) {
+  const Missing energy =
+                    lack_of(r, r.design.sel, [](const StretchDesign&s) { return s.design ? 0.0 : s.largest_energy; }),
+                height = lack_of(r, r.design.height,
+                                 [](const StretchDesign&s) { return s.design ? 0.0 : s.largest_height; });
+  std::vector<std::string> texts;
+  if (!energy.where.empty())
+    texts.push_back("above SEL on " + joined(energy.where) + " (up to " + kilojoules(energy.highest) + " kJ)");
+  if (!height.where.empty())
+    texts.push_back("above h_i on " + joined(height.where) + " (up to " + with_digits(height.highest, 3) + " m)");
+  if (texts.empty()) return std::nullopt;
+  return "on stretches with too few crossings for a design, blocks come " + joined(texts) +
+         ": run more trajectories, or give these stretches the design of a like neighbour";
 }
 
 }  // namespace talus::io

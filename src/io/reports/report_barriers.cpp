@@ -65,8 +65,9 @@ Markup section_drawing(const BarrierPart& part) {
   const double height = part.value("h_i"), diameter = diameter_of(part.value("V"));
   if (!(height > 0.0 && height < 1e3 && diameter > 0.0 && diameter < 1e3)) return {};
   constexpr double kGround = 170.0, kNet = 250.0;
-  const double scale = 130.0 / std::max(height, diameter), radius = 0.5 * scale * diameter;
-  const double centre = kGround - std::max(radius, scale * (height - part.value("f_min")));
+  const double below = std::max(0.0, height - part.value("f_min"));  // the clearance under the block
+  const double scale = 130.0 / std::max(height, below + diameter), radius = 0.5 * scale * diameter;
+  const double centre = kGround - scale * below - radius;
   Svg svg('\'', "");
   svg.element("line", {{"x1", 10}, {"x2", 370}, {"y1", kGround}, {"y2", kGround}, {"stroke", "#555"}});
   svg.element("line", {{"x1", kNet},
@@ -133,8 +134,8 @@ Markup limits_table(const BarrierPart& part) {
   for (const BarrierPart::Limit& l : part.limits)
     html += "<tr><td>"_html + l.quantity + "</td><td>" + l.name + " = " + with_digits(l.value, 4) + " " + l.unit +
             "</td><td>" + percent(l.share) + " [" + with_digits(100.0 * l.share_low, 3) + ", " +
-            with_digits(100.0 * l.share_high, 3) + "]</td><td>" + percent(l.weibull) +
-            (l.agrees ? "" : " (the law does not fit: use the share)") + "</td><td>" + once_in(l) + "</td></tr>\n";
+            with_digits(100.0 * l.share_high, 3) + "]</td><td>" + (l.agrees ? percent(l.weibull) : "it does not fit") +
+            "</td><td>" + once_in(l) + "</td></tr>\n";
   return html + "</table>\n";
 }
 
@@ -185,12 +186,12 @@ std::vector<BarrierPart> read_barrier_parts(const fs::path& folder, const std::o
 Markup standing_html(const RunFacts& run) {
   constexpr std::size_t kMostRows = 100;
   if (run.barriers.empty()) return {};
-  Markup html =
-      "<h2>Barriers of the run</h2>\n<p>They stood in the way of the blocks, and each meeting counts"_html +
-      (run.pieces > 0.0 ? ", of blocks and of pieces" : "") +
-      ". Caught: below the top and within the capacity. Over: centre at the top or above. Broken: below the top, "
-      "above the capacity.</p>\n<table><tr><th>barrier</th><th>height</th><th>capacity</th><th>caught</th>"
-      "<th>over</th><th>broken</th></tr>\n";
+  Markup html = "<h2>Barriers of the run</h2>\n<p>They stood in the way of the blocks, and each meeting counts"_html +
+                (run.pieces > 0.0 ? ", of blocks and of pieces" : "") +
+                ". Caught: below the top and within the capacity. Over: its lowest point at the top or above. Broken: "
+                "below the top, "
+                "above the capacity.</p>\n<table><tr><th>barrier</th><th>height</th><th>capacity</th><th>caught</th>"
+                "<th>over</th><th>broken</th></tr>\n";
   for (std::size_t i = 0; i < std::min(run.barriers.size(), kMostRows); ++i) {
     const StandingBarrier& b = run.barriers[i];
     html += "<tr><td>"_html + b.line.id + "</td><td class='n'>" + with_digits(b.height, 4) + " m</td><td class='n'>" +

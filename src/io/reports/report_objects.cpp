@@ -127,13 +127,21 @@ std::string years_text(std::optional<double> frequency, std::optional<double> lo
   return (years.empty() ? "no event" : years) + " [" + least + (most.empty() ? " or more]" : " to " + most + "]");
 }
 
+/// "low"; with the classes at the bounds where they differ: "none [none to high]".
+std::string class_text(const ObjectsPart::Object& object, const std::vector<std::string>& classes) {
+  const auto name = [&](std::optional<std::size_t> c) {
+    return c && *c < classes.size() ? classes[*c] : std::string();
+  };
+  const std::string low = name(object.lowest_class), high = name(object.highest_class);
+  return name(object.hazard_class) + (low == high ? "" : " [" + low + " to " + high + "]");
+}
+
 Markup object_row(const ObjectsPart::Object& object, const std::vector<std::string>& classes) {
   Markup row = "<tr><td>"_html + object.name + "</td><td class='n'>" + with_digits(object.frequency, 3) + " [" +
                with_digits(object.low, 3) + ", " + with_digits(object.high, 3) + "]</td><td class='n'>" +
                years_text(object.frequency, object.low, object.high) + "</td>";
   for (const std::string& years : object.years) row += "<td class='n'>"_html + years + "</td>";
-  const bool known = object.hazard_class && *object.hazard_class < classes.size();
-  if (!classes.empty()) row += "<td>"_html + (known ? classes[*object.hazard_class] : "") + "</td>";
+  if (!classes.empty()) row += "<td>"_html + class_text(object, classes) + "</td>";
   return row + "<td>" + shortened(object.sources, 300) + "</td></tr>\n";
 }
 
@@ -149,8 +157,13 @@ void add_object(const CsvTable& table, const CsvTable::Row& row, ObjectsPart& pa
     return;
   }
   ObjectsPart::Object object{name, table.text(row, "sources"), *frequency, *low, *high, {}, {}, {}};
-  if (const auto c = number("hazard_class"); c && *c >= 0.0 && *c < 1e3)
-    object.hazard_class = static_cast<std::size_t>(*c);
+  const auto hazard_class = [&](const std::string& column) -> std::optional<std::size_t> {
+    const auto c = number(column);
+    return c && *c >= 0.0 && *c < 1e3 ? std::optional(static_cast<std::size_t>(*c)) : std::nullopt;
+  };
+  object.hazard_class = hazard_class("hazard_class");
+  object.lowest_class = hazard_class("hazard_class_lower");
+  object.highest_class = hazard_class("hazard_class_upper");
   for (const std::string& energy : part.thresholds)
     object.years.push_back(years_text(number("frequency_" + energy), number("frequency_" + energy + "_lower"),
                                       number("frequency_" + energy + "_upper")));
@@ -197,7 +210,8 @@ Markup objects_html(const ObjectsPart& part, bool pieces, const std::vector<std:
       "event\": no block of this run did it; it may happen all the same, as often as the upper bound. Energies are the "
       "largest within the outline (safe for what does not stop a block: a yard, a road); at the first touch, for a "
       "wall, they are in objects.csv (entry), at a barrier in its table. The class is that of the object by these "
-      "frequencies, the map \"Hazard class\" has that of each cell: the longer an object, "
+      "frequencies; where those at their bounds differ (in brackets) it is not decided: take more trajectories. The "
+      "map \"Hazard class\" has that of each cell: the longer an object, "
       "the more often it is hit, and its class may be higher than that of every cell. To compare parts of a road, cut "
       "it into sections of one length.</p>\n"_html;
   if (pieces) html += "<p>Blocks broke, and "_html + kHitsOfPieces + ".</p>\n";

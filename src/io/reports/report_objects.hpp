@@ -19,7 +19,8 @@ struct ObjectsPart {
     double frequency = 0.0, low = 0.0, high = 0.0;  ///< [1/year]
     std::vector<std::string> years;                 ///< return period by threshold, with its bounds [years], in words
     std::vector<Point> curve;
-    std::optional<std::size_t> hazard_class = {};  ///< its number; nothing in a table without classes
+    /// Numbers of its class, and of those at the bounds of the frequencies; nothing in a table without classes.
+    std::optional<std::size_t> hazard_class = {}, lowest_class = {}, highest_class = {};
   };
   std::vector<std::string> thresholds;  ///< [kJ]
   std::vector<Object> objects;          ///< the most often hit first

@@ -112,7 +112,7 @@ Markup screens_html(const ScreensPart& part) {
   Markup html =
       "<h2>At the screens</h2>\n<p>Every crossing counts, each block as much as any other; a block that rolls to and "
       "fro "
-      "crosses several times. Energy is translational, jump height is from the terrain to the centre of the "
+      "crosses several times. Energy is translational, jump height is from the terrain to the lowest point of the "
       "block.</p>\n<div "
       "class='wide'><table><tr><th>screen</th><th>quantity</th><th>crossings</th><th>blocks</th><th>of "
       "all released</th><th>P50</th><th>P95</th><th>P99</th><th>largest</th></tr>\n"_html;

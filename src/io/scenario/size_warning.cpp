@@ -71,6 +71,17 @@ std::string axes_warning(const Scenario& scenario) {
          "]: only [effects.block-shape] reads the shape, and it is off: the blocks are spheres";
 }
 
+/// A line where a barrier is lower than the largest block: to the walk a block is a point, which it catches.
+std::string low_barrier_warning(const Scenario& scenario) {
+  const double largest = diameters_of(scenario).high;
+  std::vector<std::string> low;
+  for (const Barrier& b : scenario.barriers.list())
+    if (b.height > 0.0 && b.height < largest) low.push_back(b.id + " (" + text_of(b.height) + " m)");
+  if (low.empty()) return {};
+  return "barriers: " + listed(low) + ": lower than the largest block, " + text_of(largest) +
+         " m: the run takes blocks for points and catches more than a real one (unsafe)";
+}
+
 }  // namespace
 
 void warn_of_sizes(const ScenarioSpec& spec, const Scenario& scenario, std::vector<std::string>& warnings) {
@@ -84,9 +95,10 @@ void warn_of_sizes(const ScenarioSpec& spec, const Scenario& scenario, std::vect
     fitted.sizes = {sizes->low, sizes->high, {}, true, true};
     presets.push_back(&fitted);
   }
-  for (std::string& warning : std::vector<std::string>{
-           size_warning(scenario, presets), guess_warning(presets), sorting_warning(scenario.effects),
-           gain_warning(grounds), axes_warning(scenario), spec.profile ? std::string() : plane_warning(grounds)})
+  for (std::string& warning :
+       std::vector<std::string>{size_warning(scenario, presets), guess_warning(presets),
+                                sorting_warning(scenario.effects), gain_warning(grounds), axes_warning(scenario),
+                                low_barrier_warning(scenario), spec.profile ? std::string() : plane_warning(grounds)})
     if (!warning.empty()) warnings.push_back(std::move(warning));
   std::ranges::move(frequency_warnings(scenario), std::back_inserter(warnings));
 }

@@ -29,7 +29,8 @@ std::vector<LineCrossing> at_places(const std::vector<double>& places) {
 
 /// By hand: v95 = 0.2 * 95 = 19, v_d = 19 * 1.02 * 1.10 = 21.318 m/s; m_d = 2 * 2500 * 1.02 = 5100 kg;
 /// E_d = 1/2 * 5100 * 21.318^2 = 1 158 866 J; h95 = 0.04 * 95 = 3.8 m, f_min = half of the sphere of 2 m3,
-/// (6 * 2 / pi)^(1/3) / 2 = 0.781593 m, h_i = 3.8 * 1.122 + 0.781593 = 5.045193 m.
+/// (6 * 2 / pi)^(1/3) / 2 = 0.781593 m, h_i = 3.8 * 1.122 + 0.781593 = 5.045193 m, h_top = h_i + 0.781593 m. The block
+/// at 19 m/s has the 95th percentile of the energies: 1/2 * 1 kg * 19^2 = 180.5 J.
 TEST(DesignBarrier, ByHand) {
   DesignFactors factors;
   factors.trajectory = 1.02;
@@ -45,6 +46,8 @@ TEST(DesignBarrier, ByHand) {
   EXPECT_NEAR(d.mel, 1.3 * d.energy, 1e-6);
   EXPECT_NEAR(d.freeboard, 0.781593, 1e-6);
   EXPECT_NEAR(d.height, 5.045193, 1e-6);
+  EXPECT_NEAR(d.top, 5.826786, 1e-6);
+  EXPECT_NEAR(d.energy_percentile, 180.5, 1e-9);
 }
 
 /// The freeboard of small blocks is half a metre: up to a diameter of 1 m, pi / 6 m3.

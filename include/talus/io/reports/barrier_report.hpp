@@ -75,7 +75,7 @@ std::string frequency_text(const Reliability::Limit& limit);
 /// The report as a page for people, as JSON and as a table of one row per value. Energies in kJ.
 std::string barrier_text(const BarrierReport& report);
 std::string barrier_json(const BarrierReport& report);
-std::string barrier_csv(const BarrierReport& report);
+std::string barrier_csv(const BarrierReport& report);  // the law's columns are empty where it departs
 
 /// Writes NAME.json, NAME.csv, NAME_stretches.csv and NAME.gpkg, the stretches on the map, into a folder. Throws
 /// InputError, before anything is written, if a file of such a name is there that no design of Talus has left: it is
@@ -95,5 +95,8 @@ std::optional<std::string> gap_note(double without_height);
 
 /// A sentence if some stretch needs more than the one design of the whole line.
 std::optional<std::string> stretch_note(const BarrierReport& report);
+
+/// A sentence if a block exceeds the design of the whole line on a stretch with too few crossings for a design.
+std::optional<std::string> undesigned_note(const BarrierReport& report);
 
 }  // namespace talus::io
