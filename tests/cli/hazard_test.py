@@ -641,7 +641,10 @@ class Hazard(OneThread, KeptRuns, Case):
         write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A", 7.5, "mine", 3, "x"])],
                        [("name", ogr.OFTString), ("Frequency", ogr.OFTReal), ("sources", ogr.OFTString),
                         ("people", ogr.OFTInteger), ("object", ogr.OFTString)])
-        done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
+        self.write("register.csv", f'name,fid,wkt\nA,501,"{box(105, 150, 10, 8)}"\n')
+        self.assertIn("are not copied into objects.gpkg and objects.csv: fid;",
+                      self.run_well("hazard", self.path("out"), "--objects", self.path("register.csv")).stderr)
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "--overwrite")
         words = ("houses.gpkg: fields named as columns of the results are not copied into objects.gpkg and objects.csv: "
                  "Frequency, sources, object; rename them to keep them")
         self.assertIn(words, done.stderr)

@@ -89,6 +89,8 @@ class Help(Case):
         text = self.read_text("out/scenario.toml")
         self.assertIn(f"seed = {self.of('run', 'seed')['default']}", text)
         self.assertIn(self.of("run", "preset")["default"], self.of("run", "preset")["choices"])
+        self.assertIn(f'default = "{self.of("run", "preset")["default"]}"', text)
+        self.assertEqual(self.of("profile", "preset")["default"], "firm-talus-2d")  # docs/profile.md
         thresholds = [float(word) for word in self.of("run", "thresholds")["default"].split(",")]
         told = re.search(r"energy_thresholds = \[(.*?)\]", text).group(1)
         self.assertEqual(thresholds, [float(word) for word in told.split(",")])

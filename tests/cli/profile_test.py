@@ -622,6 +622,11 @@ class Faults(OnASlope):
                     self.fails_with("line.csv", "no terrain under it 195 m from its start",
                                     "must lie on the DEM, strictly between the centres of its outermost cells")
 
+    def test_a_line_off_the_dem_says_where_both_lie(self):
+        self.scenario("x = 0", head='dem = "dem.tif"\nline = "line.csv"\n')
+        self.write("line.csv", 'id,wkt\n1,"LINESTRING (8.09 46.68,8.1 46.69)"\n')
+        self.fails_with("line.csv: lies wholly off the DEM", "these look like degrees")
+
     def test_folders(self):
         self.profile("--trajectories", "5")
         self.fails(2, "--overwrite", arguments=["profile", self.path("p.toml"), "-o", self.path("out")])

@@ -30,6 +30,15 @@ TEST_F(BarrierFile, EachFeatureWithItsNumbers) {
   EXPECT_TRUE(layer.warnings.empty());
 }
 
+/// A net drawn there and back would take its capacity twice; two nets on one line are meant so.
+TEST_F(BarrierFile, OneOnItselfIsSaid) {
+  EXPECT_TRUE(said(read(fields_, {{"LINESTRING(1 1,1 7,5 7,1 7,1 3)", {"a", "4", "100"}}}).warnings,
+                   "lines of barrier a lie on each other for 8 m: it takes its capacity from a block there more than"));
+  const BarrierLayer two =
+      read(fields_, {{"LINESTRING(1 1,9 1)", {"a", "4", "100"}}, {"LINESTRING(1 1,9 1)", {"b", "4", "9"}}});
+  EXPECT_FALSE(said(two.warnings, "lie on each other"));
+}
+
 TEST_F(BarrierFile, PartlyWhereTheTerrainEndsIsSaid) {
   const BarrierLayer layer = read(fields_, {{"LINESTRING(-40 20,40 20)", {"road", "4", "1000"}}});
   EXPECT_TRUE(said(layer.warnings, " of barrier road: blocks do not get there, so that nothing is caught there"));

@@ -434,6 +434,10 @@ TEST_F(Campaigns, AModelKeepsItsBarriersAndTheBiasOfItsInstruments) {
     expect_input_error([&] { read_model(path("m.toml"), loaded.campaign); }, parts);
   };
   faulty("[[instrument_bias]]\nscreen = \"S2\"\nspeed = 0.1\n", {"m.toml:1", "S2", "no such screen", "S1"});
+  faulty("[[instrument_bias]]\nscreen = \"S1\"\nspeed = 0\n",
+         {"m.toml:1", "does nothing, must give speed, jump or spin"});
+  faulty("[[instrument_bias]]\nscreen = \"S1\"\nspeed = 0.5\n[[instrument_bias]]\nscreen = \"S1\"\njump = 0.1\n",
+         {"m.toml:4", "of screen S1 is given twice"});
   faulty("[barriers]\nline = 3\n", {"m.toml:2", "barriers.line", "list of tables"});
   faulty("[[barriers.line]]\nheight = 2\nfrom = [1, 2]\n", {"m.toml:1", "has no to"});
   faulty("[[barriers.line]]\nheight = -2\nfrom = [1, 2]\nto = [3, 4]\n", {"m.toml:2", "height = -2", "0 to 100"});

@@ -113,6 +113,8 @@ TEST_F(ScenarioFile, WhatIsNotInThisVersionIsSaidByName) {
   refused(std::string(kFiles) + "[barriers]\nfile = \"n.gpkg\"\n", {"scenario.toml:5", "no such file", "n.gpkg"});
   refused(std::string(kFiles) + "[barriers]\nfiel = \"n.gpkg\"\n",
           {"scenario.toml:5: unknown key 'fiel' in [barriers]; did you mean 'file'?"});
+  for (const char* empty : {"[barriers]\n", "[barriers]\nline = []\n"})
+    refused(std::string(kFiles) + empty, {"scenario.toml:4: [barriers] names no barrier, must have file"});
   refused(std::string(kFiles) + "[effects.vegetation-drag]\nheight = 8\n",
           {"scenario.toml:4: [effects.vegetation-drag] does nothing, must give coefficient"});
   refused(std::string(kFiles) + "[effects.vegetation-darg]\nheight = 8\n",

@@ -410,7 +410,7 @@ class Commands(Case):
         log = Log()
         process.run([self.script("talus", "echo 'table  1'", "echo 'note: too low'", "echo 'warning: too few'")], log,
                     process.Progress(log, []))
-        self.assertEqual(log.warnings, ["note: too low", "warning: too few"])
+        self.assertEqual(log.warnings, ["too low", "too few"])
 
     def test_the_help_is_a_page_where_there_is_one(self):
         from talus_qgis import algorithms, program
@@ -719,7 +719,8 @@ class FromPython(Case):
         drawn = QgsFeature()
         drawn.setGeometry(QgsGeometry.fromWkt("LineString (2650100 1170500, 2651000 1170500)"))
         line.dataProvider().addFeature(drawn)
-        for more, layers in ({"DEM": DEM, "LINE": line, "SOURCE_X": "20,60", "DIAMETER": 1.2, "SCREEN_X": "300"}, 4), (
+        along = {"DEM": DEM, "LINE": line, "SOURCE_X": "20,60", "DIAMETER": 1.2}
+        for more, layers in ({**along, "SCREEN_X": "300"}, 4), (along, 3), (  # without places it has no crossings
                 {"PROFILE": os.path.join(HERE, "../../data/profile/profile.toml")}, 0):
             context = QgsProcessingContext()
             _, good = self.run_algorithm("profile", {"TRAJECTORIES": 20, "OUT": self.path(f"profile{layers}"), "LOAD": True, **more},
@@ -729,6 +730,14 @@ class FromPython(Case):
         algorithm = QgsApplication.processingRegistry().createAlgorithmById("talus:profile")
         good, message = algorithm.checkParameterValues({"DEM": DEM, "LINE": line, "OUT": self.path("none")}, QgsProcessingContext())
         self.assertEqual((good, message), (False, "Give the terrain, a line over it, where blocks start and their diameter, or the file of a profile."))
+
+    def test_a_diameter_that_is_given_goes_before_those_of_the_sources(self):  # which are 0.5 to 1.8 m
+        log = Log()
+        _, good = self.run_algorithm("run", self.inputs(TRAJECTORIES=1, DIAMETER=0.7), log)
+        self.assertTrue(good, log.textLog())
+        self.assertIn("The diameter is that which was given", log.textLog())
+        stops = QgsVectorLayer(self.path("out/stops.gpkg") + "|layername=stops", "stops", "ogr")
+        self.assertEqual({stop["diameter_m"] for stop in stops.getFeatures()}, {0.7})
 
     def test_cancel_while_a_layer_is_written(self):
         from talus_qgis import layers
@@ -1149,12 +1158,12 @@ class FromPython(Case):
 
     def assert_as_in_project(self):
         """The one group of the results has the titles, the order and the visibility of the project that the program has
-        written (without the inputs of the run and what lies second in a GeoPackage)."""
+        written (without what lies second in a GeoPackage)."""
         groups = [g for g in QgsProject.instance().layerTreeRoot().findGroups() if g.name() == "Talus: out"]
         self.assertEqual(len(groups), 1)  # one group for the run and what is added to it
         project = xml.parse(self.path("out/talus.qgs")).getroot()
         wanted = [(layer.get("name"), layer.get("checked") == "Qt::Checked") for layer in project.iter("layer-tree-layer")
-                  if layer.get("name") not in ("Sources of the run", "Hillshade of the DEM")]
+                  if layer.get("name") != "Hillshade of the DEM"]
         *results, hillshade = groups[0].findLayers()
         found = [(node.name(), node.itemVisibilityChecked()) for node in results if node.name() != "Vertices of the paths"]
         self.assertGreater(len(wanted), 15)

@@ -107,9 +107,9 @@ Facts vectors_choice() {
   return facts;
 }
 
-Facts preset_choice() {
+Facts preset_choice(std::string_view standard) {
   Facts facts;
   for (const talus::Preset& preset : talus::presets()) facts.choices.emplace_back(preset.name);
-  facts.standard = talus::kDefaultPreset;
+  facts.standard = standard;
   return facts;
 }

@@ -45,8 +45,9 @@ Facts default_of(std::string value);
 Facts with_unit(std::string unit, double value);
 
 /// Facts of the choice of a surface, of a format of layers, and of a preset.
+/// @param standard  the preset where none is given
 Facts surface_choice();
 Facts vectors_choice();
-Facts preset_choice();
+Facts preset_choice(std::string_view standard);
 /// A number of lanes.
 Facts lane_choice();

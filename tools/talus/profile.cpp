@@ -16,6 +16,7 @@
 #include "talus/run/stopwatch.hpp"
 #include "talus/run/summary.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
+#include "talus/simulate/scenario/presets.hpp"
 #include "talus/simulate/simulate.hpp"
 #include "talus/simulate/tally_of.hpp"
 
@@ -180,12 +181,12 @@ void add_profile(CLI::App& app, Action& action) {
        file_of({"vector"}));
   add_places(*command, "--source-x", flags.source,
              "where blocks start, in m along the line: one place, or from and to with a comma and no spaces: 20,40");
-  with(command->add_option("--diameter", flags.run.diameter, "of the blocks [m]"),
+  with(command->add_option("--diameter", flags.run.diameter, "of all blocks of the profile [m]"),
        number_of(talus::bounds_of("blocks.diameter")));
   with(command->add_option("--release-height", flags.release_height, "above the terrain [m] (1)"),
        number_of(talus::bounds_of("sources.release_height"), "1"));
   with(command->add_option("--preset", flags.run.preset, "parameter set of the ground; talus presets lists them"),
-       preset_choice());
+       preset_choice(talus::kDefaultProfilePreset));
   add_places(*command, "--screen-x", flags.screens,
              "where crossings are recorded, in m along the line, with commas and no spaces: 110,199");
   add_surface(*command, flags.run.surface);

@@ -5,6 +5,7 @@
 #include "talus/base/text.hpp"
 #include "talus/run/run_session.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
+#include "talus/simulate/scenario/presets.hpp"
 #include "terminal_observer.hpp"
 
 namespace {
@@ -62,7 +63,7 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
                   "field is not read; may be repeated")
       ->allow_extra_args(false);
   with(command.add_option("--preset", flags.preset, "parameter set of the ground; talus presets lists them"),
-       preset_choice());
+       preset_choice(talus::kDefaultPreset));
   with(command.add_option("--parameters", flags.parameters,
                           "a ground that talus calibrate or diagnose has fitted (fitted.toml), in place of --preset"),
        file_of({"toml"}));

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <climits>
 #include <stdexcept>
 
 #include "posix_bytes.hpp"
@@ -31,7 +32,11 @@ void refuse_unwritable(const fs::path& folder) {
 StagedPath::StagedPath(Kind kind, const fs::path& path, const std::string& extension)
     : path_(path),
       hidden_(path.parent_path() / (hidden_prefix(path, extension) + std::to_string(getpid()) + extension)),
-      owned_(kind == Kind::File) {}  // a folder of this name may be another's: see make_folder
+      owned_(kind == Kind::File) {  // a folder of this name may be another's: see make_folder
+  if (hidden_.filename().string().size() > NAME_MAX)
+    throw InputError(path.parent_path().string() + ": the name of the output is too long for its temporary " +
+                     (kind == Kind::File ? "file" : "folder") + "; give a shorter one");
+}
 
 StagedPath::~StagedPath() {
   std::error_code ignored;

@@ -112,9 +112,9 @@ void Layer::choose_layer() {
   std::vector<std::string> names;
   for (OGRLayer* layer : layers) names.emplace_back(layer->GetName());
   const NamedLayer wanted = named_layer(path_);
-  if (wanted.unread.starts_with("|layerid="))
+  if (wanted.unread.starts_with("|layer"))
     throw InputError(path_ + ": '" + wanted.unread +
-                     "' is not read: must be a whole number from 0, or name the layer: " +
+                     "' is not read: must be a whole number from 0, or one layer by its name: " +
                      shell_word("|layername=" + names.front()));
   if (!wanted.unread.empty())
     throw InputError(path_ + ": '" + wanted.unread +
@@ -173,6 +173,10 @@ std::vector<std::string> Layer::field_names() const {
   std::vector<std::string> names(fields().GetFieldCount());
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = fields().GetFieldDefn(static_cast<int>(i))->GetNameRef();
   return names;
+}
+
+bool Layer::names_are_utf8() const {
+  return std::ranges::all_of(field_names(), is_utf8);
 }
 
 std::string Layer::label(const OGRFeature& feature) const {
@@ -334,8 +338,7 @@ void Layer::add_valid(const OGRPolygon& polygon, Parts& parts, const std::string
   };
   if (mended) keep(keep, *mended);
   if (parts.polygons.size() == before)
-    throw InputError(where + ": polygon is invalid (" + reason +
-                     ") and cannot be mended: repair it, for example with ogr2ogr -makevalid");
+    throw InputError(where + ": polygon is invalid (" + reason + ") and has no area: draw it anew, or delete it");
   if (++mended_ <= 5) warnings_.push_back(where + ": polygon was invalid (" + reason + ") and was mended");
 }
 

@@ -60,6 +60,7 @@ class Layer {
   /// @param way_out  what the user may do then
   int field(const std::string& name, const std::string& way_out = "rename all but one") const;
   std::vector<std::string> field_names() const;
+  bool names_are_utf8() const;
   const OGRFeatureDefn& fields() const { return *layer_->GetLayerDefn(); }
   /// "cliffs.shp: feature 12", of a CSV "trees.csv: row 12 below the header", for messages.
   std::string label(const OGRFeature& feature) const;

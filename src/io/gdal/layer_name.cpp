@@ -40,9 +40,11 @@ NamedLayer named_layer(const std::string& name) {
     const std::string part = name.substr(at + 1, end == std::string::npos ? end : end - at - 1);
     const std::size_t equals = part.find('=');
     const std::string key = part.substr(0, equals), value = part.substr(equals + 1);
+    const bool first = found.layer.empty() && found.number < 0;
     if (key == "layername") found.layer = value;
     if (key == "layerid") found.number = number_of_layer(value);
-    if (key != "layername" && (key != "layerid" || found.number < 0)) found.unread = "|" + part;
+    const bool read = key == "layername" ? !value.empty() : key == "layerid" && found.number >= 0;
+    if (!read || !first) found.unread = "|" + part;
     at = end;
   }
   return found;

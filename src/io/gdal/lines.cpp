@@ -190,11 +190,11 @@ double length_of_union(std::vector<Range> parts) {
   return length;
 }
 
-/// Length of a screen that lies on another part of it [m]. Along the longer side of the screen, so that only neighbours
-/// are compared.
-double doubled_length(const Screen& screen) {
+/// Length of the lines of a feature that lies on another part of them [m]. Along their longer side, so that only
+/// neighbours are compared.
+double doubled_length(const std::vector<std::vector<Eigen::Vector2d>>& lines) {
   std::vector<LinePiece> pieces;
-  append_pieces(0, screen.lines, pieces);
+  append_pieces(0, lines, pieces);
   std::erase_if(pieces, [](const LinePiece& piece) { return piece.from == piece.to; });
   Eigen::AlignedBox2d box;
   for (const LinePiece& piece : pieces) box.extend(piece.from).extend(piece.to);
@@ -212,14 +212,16 @@ double doubled_length(const Screen& screen) {
   return length;
 }
 
-/// A warning of screens that lie on themselves, as when a feature was pasted twice or a line drawn there and back.
-void warn_of_doubled_lines(ScreenLayer& layer, const std::string& path) {
-  for (const Screen& screen : layer.screens)
-    if (const double length = doubled_length(screen); length > 0.0)
-      layer.warnings.push_back(path + ": lines of screen " + screen.id + " lie on each other for " +
-                               with_digits(length, 3) +
-                               " m: crossings there count more than once in screens.csv (talus barrier takes the first "
-                               "of a block). Delete one, or give it another id");
+/// Warns of screens or barriers that lie on themselves, as when a line was pasted twice or drawn there and back.
+/// @param kind    "screen"
+/// @param effect  what comes of it
+template <class Line>
+void warn_of_doubled_lines(std::span<const Line> lines, const std::string& kind, const std::string& effect,
+                           const std::string& path, std::vector<std::string>& warnings) {
+  for (const Line& line : lines)
+    if (const double length = doubled_length(line.lines); length > 0.0)
+      warnings.push_back(path + ": lines of " + kind + " " + line.id + " lie on each other for " +
+                         with_digits(length, 3) + " m: " + effect);
 }
 
 }  // namespace
@@ -243,7 +245,10 @@ ScreenLayer read_screens(const std::string& path, const Terrain& terrain) {
   reader.finish(out);
   warn_of_gaps<Screen>(out.screens, "screen", "the crossings are lower bounds (unsafe)", path, terrain, on_map,
                        out.warnings);
-  warn_of_doubled_lines(out, path);
+  warn_of_doubled_lines<Screen>(out.screens, "screen",
+                                "crossings there count more than once in screens.csv (talus barrier takes the first of "
+                                "a block). Delete one, or give it another id",
+                                path, out.warnings);
   return out;
 }
 
@@ -262,6 +267,9 @@ BarrierLayer read_barriers(const std::string& path, const Terrain& terrain) {
   });
   reader.finish(out);
   warn_of_gaps<Barrier>(out.barriers, "barrier", "nothing is caught there", path, terrain, on_map, out.warnings);
+  warn_of_doubled_lines<Barrier>(out.barriers, "barrier",
+                                 "it takes its capacity from a block there more than once (unsafe). Delete one", path,
+                                 out.warnings);
   return out;
 }
 

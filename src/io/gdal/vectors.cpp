@@ -46,7 +46,10 @@ std::vector<FieldUse> columns_of(const Layer& layer, const std::string& path, co
     const int index = given.field.empty() ? -1 : field_of(layer, name, given.field);
     if (index < 0 && !given.field.empty())
       throw InputError(given.where + ": " + path + " has no field '" + given.field + "'" +
-                       known_names(given.field, layer.field_names()));
+                       known_names(given.field, layer.field_names()) +
+                       (layer.names_are_utf8() ? ""
+                                               : "; names of its fields are not UTF-8: write its encoding, such as "
+                                                 "ISO-8859-1, into a file of the same name that ends in .cpg"));
     mapped.emplace_back(name, index);
   }
   const auto taken = [&](int index) {  // by another name

@@ -474,7 +474,7 @@ std::string ObjectLayer::not_copied_text(const HazardRules& rules, const HazardM
   std::vector<std::string> left_out;
   for (int i = 0; i < model.GetFieldCount(); ++i) {
     const std::string name = model.GetFieldDefnRef(i)->GetNameRef();
-    if (std::ranges::count(copied, i) == 0 && lowercase(name) != "fid") left_out.push_back(name);  // fid: the row
+    if (std::ranges::count(copied, i) == 0) left_out.push_back(name);
   }
   if (left_out.empty()) return {};
   return state_->file + ": fields named as columns of the results are not copied into objects.gpkg and objects.csv: " +

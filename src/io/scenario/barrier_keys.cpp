@@ -87,6 +87,11 @@ void read_instrument_bias(ScenarioSpec& spec, TableReader& top) {
     bias.jump = table.number("jump", kBias).value_or(0.0);
     bias.spin = table.number("spin", kBias).value_or(0.0);
     table.finish();
+    if (!(bias.speed != 0.0 || bias.jump != 0.0 || bias.spin != 0.0))
+      top.faults().push_back(bias.where + " does nothing, must give speed, jump or spin, other than 0");
+    if (std::ranges::count(spec.instrument_bias, bias.screen, &InstrumentBias::screen) > 0)
+      top.faults().push_back(bias.where + (bias.screen.empty() ? " without a screen" : " of screen " + bias.screen) +
+                             " is given twice, must be one of each screen and one without");
     spec.instrument_bias.push_back(std::move(bias));
   }
 }

@@ -145,9 +145,10 @@ void warn_unused_diameter(const ScenarioSpec& spec, const SourceLayer& layer, st
     if (std::isnan(feature.diameter.low)) return;
     all = {std::min(all.low, feature.diameter.low), std::max(all.high, feature.diameter.high)};
   }
-  warnings.push_back("blocks.diameter (" + origin + ") is not used: all " + std::to_string(layer.features.size()) +
-                     " features of " + spec.sources.path + " have diameters of their own, " + text_of(all.low) +
-                     " to " + text_of(all.high) + " m (--field diameter= to leave the field out)");
+  warnings.push_back(
+      "blocks.diameter (" + origin + ") is not used: all " + std::to_string(layer.features.size()) + " features of " +
+      spec.sources.path + " have diameters of their own, " + text_of(all.low) + " to " + text_of(all.high) +
+      " m (to leave the fields out: --field diameter=, --field diameter_min= and --field diameter_max=)");
 }
 
 /// Whether the ground around a cell is steeper than half of its friction angle. On flatter ground blocks come to rest

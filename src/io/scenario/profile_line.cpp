@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "io/gdal/layer.hpp"
+#include "io/gdal/off_map.hpp"
 #include "profile_keys.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -84,6 +85,9 @@ ProfileLine read_profile_line(const std::string& path, const Terrain& terrain, c
     for (int i = 0; i < line.getNumPoints(); ++i) plan.emplace_back(line.getX(i), line.getY(i));
   }
   if (plan.size() < 2) throw InputError(path + ": has no line, must have one");
+  OGREnvelope box;
+  for (const Eigen::Vector2d& place : plan) box.Merge(place.x(), place.y());
+  if (wholly_off(box, terrain.heights.grid)) throw InputError(off_dem_text(path, box, layer, terrain));
   layer.tell(out);
   const double step = spec.profile->step;
   ProfileLine line = profile_along(plan, Surface(terrain.heights, spec.surface), step, path);

@@ -60,9 +60,14 @@ class SpecReader {
                         ": [screens] names no file, must have file = \"...\", the lines of the screens");
     screens.finish();
     TableReader barriers = top.table("barriers");
+    const std::size_t faults_before = faults_.size();
     named_file(barriers, "file", spec_.barriers);
     read_barrier_lines(spec_, barriers, origin_);
     barriers.finish();
+    if (barriers.value() != nullptr && barriers.find("file") == nullptr && spec_.barrier_lines.empty() &&
+        faults_.size() == faults_before)  // a misspelt key says more
+      faults_.push_back(file_ + ":" + std::to_string(barriers.value()->line) +
+                        ": [barriers] names no barrier, must have file = \"...\" or line = [...]");
     read_frequency(spec_, top.table("frequency"), origin_);
     top.finish();
   }
@@ -93,6 +98,9 @@ class SpecReader {
     read_effects(spec_, top.table("effects"), base_, origin_);
     TableReader barriers = top.table("barriers");
     read_barrier_lines(spec_, barriers, origin_);
+    if (barriers.value() != nullptr && barriers.find("file") == nullptr && barriers.find("line") == nullptr)
+      faults_.push_back(file_ + ":" + std::to_string(barriers.value()->line) +
+                        ": [barriers] names no barrier, must have file = \"...\" or line = [...]");
     barriers.finish();
     read_instrument_bias(spec_, top);
     top.finish();

@@ -292,9 +292,10 @@ std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t 
     squares += weight * weight * s.trajectories;
     scale.total += cell;
   }
-  if (!(scale.total > 0.0)) return std::nullopt;                        // a field of zeros counts as not given
+  if (!(scale.total > 0.0) && !found.total) return std::nullopt;        // a field of zeros counts as not given
   if (squares < std::ldexp(std::numeric_limits<double>::min(), kBits))  // its unit would be 0
-    refuse("all sources together have " + text_of(scale.total) + " events per year, must be 1e-100 at least");
+    refuse("all sources together have " + text_of(std::max(scale.total, s.frequency.total)) +
+           " events per year, must be 1e-100 at least");
   scale.unit = std::ldexp(power_of_two_above(most), -bits);
   scale.square_unit = std::ldexp(power_of_two_above(squares), -bits);
   out.weights_.reserve(cells.size() * factors.size());

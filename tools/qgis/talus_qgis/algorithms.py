@@ -256,8 +256,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         title = self._label(p)
         if p["unit"]:
             title += f" [{tr(p['unit'])}]"
-        if self.by_scenario() and any(p["name"] in names for names in self.table.get("needs", ())[1:]):
-            title += ", " + tr("needed without a scenario")
+        if any(p["name"] in names for names in self.table.get("needs", ())[1:]):
+            title += ", " + tr("needed without a scenario" if self.by_scenario() else "needed without the file of a profile")
         if p["type"] != "flag" and p["default"] is not None:
             title += " (" + tr("{value} if not set").format(value=p["default"]) + ")"
         return title
@@ -462,7 +462,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         hints = []
         for p in self.described():
             names = [*p["flags"], *filter(None, [KEYS_OF_SCENARIO.get(p["name"])])]
-            places = {name: re.search(r"(?<![\w-])" + re.escape(name) + r"(?![\w-])", text) for name in names}
+            places = {name: re.search(r"(?<![\w-])(?<!the run )" + re.escape(name) + r"(?![\w-])", text) for name in names}
             found = [name for name in places if places[name]]
             field, place = self._in_dialog(p, text)
             if found and field:
@@ -529,6 +529,10 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
                     words.append("--field=frequency=")  # the program takes one of the two
                     feedback.pushInfo(tr("The events per year are those that were given; a field frequency of the sources is "
                                          "not read."))
+                elif field.startswith("diameter") and parameters.get("DIAMETER") not in (None, ""):
+                    words.append(f"--field={field}=")
+        if "--field=diameter=" in words:
+            feedback.pushInfo(tr("The diameter is that which was given; fields of the sources with diameters are not read."))
         return words
 
     def _column(self, parameters, key, layer, context):

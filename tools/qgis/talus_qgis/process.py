@@ -113,7 +113,7 @@ class Messages:
         elif stream == "stdout" and text.startswith("warning "):  # of talus check
             self.feedback.pushWarning(text[len("warning "):].strip())
         elif text.startswith(("note: ", "warning: ")):  # below the table of talus barrier
-            self.feedback.pushWarning(text)
+            self.feedback.pushWarning(text.split(": ", 1)[1])
         else:
             self.feedback.pushConsoleInfo(aligned(text))
 

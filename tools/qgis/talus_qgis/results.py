@@ -4,10 +4,11 @@ import os
 import re
 from contextlib import contextmanager
 
-from qgis.core import (Qgis, QgsGraduatedSymbolRenderer, QgsHillshadeRenderer, QgsLayerTree, QgsLayerTreeGroup, QgsLineSymbol, QgsMapLayerLegendUtils,
-                       QgsProcessingContext,
+from qgis.core import (Qgis, QgsFillSymbol, QgsGraduatedSymbolRenderer, QgsHillshadeRenderer, QgsLayerTree, QgsLayerTreeGroup, QgsLineSymbol,
+                       QgsMapLayerLegendUtils, QgsMarkerSymbol, QgsProcessingContext,
                        QgsProcessingLayerPostProcessorInterface, QgsProject, QgsProviderRegistry,
-                       QgsRasterDataProvider, QgsRasterLayer, QgsRasterPipe, QgsRendererRange, QgsSingleBandPseudoColorRenderer, QgsVectorLayer, QgsWkbTypes)
+                       QgsRasterDataProvider, QgsRasterLayer, QgsRasterPipe, QgsRendererRange, QgsSingleBandPseudoColorRenderer, QgsSingleSymbolRenderer, QgsVectorLayer,
+                       QgsWkbTypes)
 from qgis.PyQt.QtCore import QCoreApplication, Qt, QThread
 
 from . import program
@@ -91,13 +92,15 @@ def files_of(folder, begin):
 
 
 def layers_of(folder, file, names):
-    """Layers of a profile, as rows of `files_of`, the top first and the last hidden; none of a profile of x and z, which has
-    no place on the map."""
+    """Layers of a profile, as rows of `files_of`, the top first and the last hidden: those that it has, as it has no crossings
+    where nothing crosses; none of a profile of x and z, which has no place on the map."""
     with open(os.path.join(folder, "run.json"), encoding="utf-8") as record:
         if not any(read["role"] == "line" for read in json.load(record)["inputs"]):
             return []
-    uri = os.path.join(folder, file) + "|layername="
-    return [(uri + name, title_of(name), file, rank, name != names[-1]) for rank, name in enumerate(names)]
+    path = os.path.join(folder, file)
+    there = {layer for layer, _ in _layers_in(path)}
+    return [(f"{path}|layername={name}", title_of(name), file, rank, name != names[-1])
+            for rank, name in enumerate(names) if name in there]
 
 
 def _place(rank, title):
@@ -159,6 +162,34 @@ def _hillshade_of(folder):
     layer.setCustomProperty(RANK_MARK, BELOW_ALL)
     layer.setCustomProperty(TITLE_MARK, layer.name())
     return layer
+
+
+def _outlines_of(folder):
+    """The barriers and the sources of a run above its maps, as talus.qgs shows them; none of what is no file any more."""
+    try:
+        with open(os.path.join(folder, "run.json"), encoding="utf-8") as file:
+            inputs = json.load(file)["inputs"]
+        paths = [(role, title, read["path"]) for role, title in (("barriers", "Barriers of the run"), ("sources", "Sources of the run"))
+                 for read in inputs if read["role"] == role]
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
+    above_maps = next((rank for rank, entry in enumerate(_entries()) if entry["file"].endswith(".tif")), 0) - 0.3
+    outlines = []
+    for place, (role, title, path) in enumerate(paths):
+        layer = QgsVectorLayer(path, tr(title), "ogr") if os.path.isfile(path.split("|")[0]) else None
+        if layer is None or not layer.isValid():
+            continue
+        symbol = {QgsWkbTypes.PointGeometry: lambda: QgsMarkerSymbol.createSimple({"color": "#333333", "size": "2"}),
+                  QgsWkbTypes.LineGeometry: lambda: QgsLineSymbol.createSimple({"color": "#333333", "line_width": "0.6"}),
+                  QgsWkbTypes.PolygonGeometry: lambda: QgsFillSymbol.createSimple(
+                      {"style": "no", "outline_color": "#333333", "outline_width": "0.6"})}.get(layer.geometryType())
+        if symbol is None:
+            continue
+        layer.setRenderer(QgsSingleSymbolRenderer(symbol()))
+        layer.setCustomProperty(RANK_MARK, above_maps + 0.1 * place)
+        layer.setCustomProperty(TITLE_MARK, layer.name())
+        outlines.append(layer)
+    return outlines
 
 
 def _rank(layer):
@@ -380,10 +411,9 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
             own = QgsLayerTreeGroup(self.title)
             own.setCustomProperty(GROUP_MARK, self.folder)
             root.insertChildNode(0, own)
-            hillshade = _hillshade_of(self.folder)
-            if hillshade is not None:
-                project.addMapLayer(hillshade, False)
-                own.addLayer(hillshade).setExpanded(False)
+            for layer in [*_outlines_of(self.folder), *filter(None, [_hillshade_of(self.folder)])]:
+                project.addMapLayer(layer, False)
+                own.addLayer(layer).setExpanded(False)
         for group in marked:  # candidate sources are marked by their file, and stay
             if group is not own and os.path.isdir(self.folder) and os.path.isdir(group.customProperty(GROUP_MARK)):
                 group.setItemVisibilityChecked(False)

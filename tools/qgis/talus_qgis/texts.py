@@ -143,8 +143,8 @@ KEYS = {
     # titles of layers that are not in talus.qgs
     "title hillshade": ("Hillshade of the DEM", "Geländeschummerung"),
     "title vertices": ("Vertices of the paths", "Stützpunkte der Bahnen"),
-    "title pits": ("Pits", "Mulden"),
-    "title crossings": ("Crossings", "Durchgänge"),
+    "title pits": ("Pits and dammed cells", "Mulden und gestaute Zellen"),
+    "title crossings": ("Crossings at the places", "Durchgänge an den Stellen"),
     "title stops": ("Ends of the blocks", "Enden der Blöcke"),
     "title profile": ("Profile", "Profil"),
     "title bins": ("Speed and jump along the profile", "Geschwindigkeit und Sprung entlang des Profils"),
@@ -218,6 +218,9 @@ GERMAN = {
         "Ein Feld der Ausbruchgebiete mit dem Namen diameter, diameter_min, diameter_max, release_height, frequency oder name wird "
         "gelesen, wo dafür kein Feld gewählt ist.",
     "needed without a scenario": "nötig ohne Szenario",
+    "needed without the file of a profile": "nötig ohne Profildatei",
+    "The diameter is that which was given; fields of the sources with diameters are not read.":
+        "Es gilt der angegebene Durchmesser; Felder der Ausbruchgebiete mit Durchmessern werden nicht gelesen.",
     "Several layers, as a road and houses, are joined into one.":
         "Mehrere Layer, wie Strasse und Häuser, werden zu einem zusammengefügt.",
     "{name}: some features have no number yet, so that all are numbered anew from 1. With saved edits the results keep the "
@@ -289,6 +292,8 @@ GERMAN = {
     "Release cells": "Startzellen",
     "Source cells that reach the cell": "Ausbruchzellen, die die Zelle erreichen",
     "Barriers of the run: counts by stretch": "Schutzbauten des Laufs: Zahlen je Abschnitt",
+    "Barriers of the run": "Schutzbauten des Laufs",
+    "Sources of the run": "Ausbruchgebiete des Laufs",
     "Objects: sources of the hits": "Objekte: woher die Treffer kommen",
     "Objects: hazard curves": "Objekte: Gefahrenkurven",
     "Screens: all quantities": "Nachweislinien: alle Grössen",
@@ -304,7 +309,8 @@ GERMAN = {
     "parameter set of the ground; talus presets lists them": "Parametersatz des Bodens; talus presets listet sie",
     "bilinear or creased (creased): heights between the cells' centres":
         "bilinear oder creased (creased): Höhen zwischen den Zellmitten",
-    "of the blocks [m]": "der Blöcke [m]; ein Feld der Ausbruchgebiete geht vor",
+    "of the blocks [m]": "der Blöcke [m]",
+    "of all blocks of the profile [m]": "aller Blöcke des Profils [m]",
     "events per year of all sources together, for talus hazard":
         "Ereignisse pro Jahr aller Ausbruchgebiete zusammen, für die Gefahrenkarten",
     "energies of the maps of exceedance [kJ], with commas and no spaces: 30,300 (default)":
