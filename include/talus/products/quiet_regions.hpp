@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "talus/products/cell_window.hpp"
+#include "talus/simulate/plan/region.hpp"
 #include "talus/terrain/grid.hpp"
 
 namespace talus {
@@ -28,7 +29,7 @@ class QuietRegions {
   Quiet of(const CellWindow& window) const;
 
  private:
-  int across_ = 0;
+  Regions layout_;
   std::vector<Quiet> regions_;
 };
 

@@ -40,8 +40,10 @@ std::int64_t fixed_length(double length) {
   return fixed_point(length, 1.0 / CellRecord::kLengthUnit);
 }
 
-std::size_t cell_in_region(int column, int row) {
-  return static_cast<std::size_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
+/// Empties a container and releases its memory, which an assignment of `{}` would keep.
+template <class Container>
+void give_back(Container& container) {
+  Container(container.get_allocator()).swap(container);
 }
 
 /// By cell of a region, where its visits begin when they are sorted by cell.
@@ -229,11 +231,9 @@ Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vecto
       limits_(floats_below(thresholds_)),
       threshold_count_(std::accumulate(thresholds_.begin(), thresholds_.end(), std::size_t{0},
                                        [](std::size_t sum, const auto& of) { return sum + of.size(); })),
-      regions_across_((grid.columns + kRegionSide - 1) / kRegionSide),
-      region_count_(static_cast<std::size_t>(regions_across_) *
-                    static_cast<std::size_t>((grid.rows + kRegionSide - 1) / kRegionSide)),
-      regions_(static_cast<Region*>(memory.allocate(region_count_ * sizeof(Region))), {memory, 0}) {
-  for (std::size_t& made = regions_.get_deleter().count; made < region_count_; ++made)
+      layout_(grid),
+      regions_(static_cast<Region*>(memory.allocate(layout_.count() * sizeof(Region))), {memory, 0}) {
+  for (std::size_t& made = regions_.get_deleter().count; made < layout_.count(); ++made)
     std::construct_at(&regions_[made], memory);
 }
 
@@ -274,7 +274,7 @@ std::uint64_t Tally::add(const VisitBatch& batch) {
 
 std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const VisitBatch& batch, Work& work) {
   memory().keep_below_limit();
-  TALUS_EXPECT(index < region_count_, "a visit lies in a region of the tally");
+  TALUS_EXPECT(index < layout_.count(), "a visit lies in a region of the tally");
   Region& region = regions_[index];
   TALUS_EXPECT(batch.levels() <= 1 + energy_thresholds(), "a batch has no other thresholds than the tally");
   TALUS_EXPECT(visits.totals.size() == (keep_total_ ? visits.visits.size() : 0), "each visit has its total energy");
@@ -360,16 +360,15 @@ void Tally::count_exceedances(std::uint32_t* over, const CellValues& values, con
   }
 }
 
-const Tally::Region& Tally::region_of(int column, int row) const {
-  return regions_[static_cast<std::size_t>(row / kRegionSide) * static_cast<std::size_t>(regions_across_) +
-                  static_cast<std::size_t>(column / kRegionSide)];
+Tally::Place Tally::place_of(int column, int row) const {
+  const Region& region = regions_[layout_.of_cell(column, row)];
+  const std::uint16_t slot = region.slot.empty() ? std::uint16_t{0} : region.slot[cell_in_region(column, row)];
+  return {region, slot == 0 ? kNoRecord : slot - std::size_t{1}};
 }
 
 const CellRecord* Tally::find(int column, int row) const {
-  const Region& region = region_of(column, row);
-  if (region.slot.empty()) return nullptr;
-  const std::uint16_t slot = region.slot[cell_in_region(column, row)];
-  return slot == 0 ? nullptr : &region.records[slot - 1U];
+  const auto [region, record] = place_of(column, row);
+  return record == kNoRecord ? nullptr : &region.records[record];
 }
 
 void Tally::prefetch_record(int column, int row) const {
@@ -377,26 +376,25 @@ void Tally::prefetch_record(int column, int row) const {
 }
 
 const HazardCell* Tally::hazard(int column, int row) const {
-  const Region& region = region_of(column, row);
-  if (!hazard_ || region.slot.empty()) return nullptr;
-  const std::uint16_t slot = region.slot[cell_in_region(column, row)];
-  return slot == 0 ? nullptr : &region.hazards[slot - 1U];
+  if (!hazard_) return nullptr;
+  const auto [region, record] = place_of(column, row);
+  return record == kNoRecord ? nullptr : &region.hazards[record];
 }
 
 const EnergyTotal* Tally::energy_total(int column, int row) const {
   if (!keep_total_) return nullptr;
-  const Region& region = region_of(column, row);
-  return &region.totals[region.slot[cell_in_region(column, row)] - 1U];
+  const auto [region, record] = place_of(column, row);
+  return &region.totals[record];
 }
 
 const std::uint32_t* Tally::exceedances(int column, int row) const {
-  const Region& region = region_of(column, row);
-  return region.exceedances.data() + (region.slot[cell_in_region(column, row)] - 1U) * threshold_count_;
+  const auto [region, record] = place_of(column, row);
+  return region.exceedances.data() + record * threshold_count_;
 }
 
 const std::int64_t* Tally::lengths_above(int column, int row) const {
-  const Region& region = region_of(column, row);
-  return region.lengths.data() + (region.slot[cell_in_region(column, row)] - 1U) * energy_thresholds();
+  const auto [region, record] = place_of(column, row);
+  return region.lengths.data() + record * energy_thresholds();
 }
 
 bool Tally::is_touched(std::size_t region) const {
@@ -423,8 +421,8 @@ void Tally::save(std::size_t index, ByteWriter& out) const {
 void Tally::take(std::size_t index, ByteWriter& out) {
   save(index, out);
   Region& region = regions_[index];
-  region.slot = {}, region.exceedances = {}, region.lengths = {};
-  region.records.clear(), region.totals.clear(), region.hazards.clear();
+  give_back(region.slot), give_back(region.exceedances), give_back(region.lengths);
+  give_back(region.records), give_back(region.totals), give_back(region.hazards);
 }
 
 void Tally::merge(std::size_t index, ByteReader& in) {
@@ -451,13 +449,13 @@ void Tally::merge(std::size_t index, ByteReader& in) {
 
 std::vector<std::uint64_t> Tally::cells_by_passages(std::uint32_t most) const {
   std::vector<std::uint64_t> cells(most + 1U);
-  for (std::size_t i = 0; i < region_count_; ++i)
+  for (std::size_t i = 0; i < regions(); ++i)
     for (const CellRecord& record : regions_[i].records) ++cells[std::min(record.passages, most)];
   return cells;
 }
 
 std::uint64_t Tally::touched_cells() const {
-  return std::accumulate(&regions_[0], &regions_[0] + region_count_, std::uint64_t{0},
+  return std::accumulate(&regions_[0], &regions_[0] + regions(), std::uint64_t{0},
                          [](std::uint64_t sum, const Region& region) { return sum + region.records.size(); });
 }
 
