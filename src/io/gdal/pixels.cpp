@@ -52,7 +52,7 @@ double PixelReader::at(double column, double row) {
   const int x = static_cast<int>(column), y = static_cast<int>(row);
   const std::pair<int, int> key{y / kSide, x / kSide};
   if (tile_ == nullptr || key != key_) {
-    if (tiles_.size() > kTiles && !tiles_.contains(key)) tiles_.clear();
+    if (tiles_.size() >= kTiles && !tiles_.contains(key)) tiles_.clear();
     const auto [found, fresh] = tiles_.try_emplace(key);
     if (fresh) read(key.second * kSide, key.first * kSide, found->second);
     key_ = key;
