@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <system_error>
 
 #include "talus/base/expect.hpp"
 
@@ -60,6 +61,13 @@ std::string with_digits(double value, int digits) {
 double number_in(std::string_view text) {
   double number = std::numeric_limits<double>::quiet_NaN();
   std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+std::optional<double> decimal_number(std::string_view text) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return number;
 }
 

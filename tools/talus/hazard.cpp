@@ -310,9 +310,8 @@ void add_hazard(CLI::App& app, Action& action) {
       "m: the maps are for an object of this width (and the diameter of the block) at each place, else for the "
       "cell; with --objects also the width of lines without a field width");
   with(width, number_of(kWidth))->check([](const std::string& text) -> std::string {
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    if (end != text.c_str() && *end == 0 && !talus::fault_of(kWidth, value)) return {};
+    const std::optional<double> value = talus::decimal_number(text);
+    if (value && !talus::fault_of(kWidth, *value)) return {};
     return text + ": must be above 0 and at most 1000 m (width of the object; leave it out for the cell)";
   });
   command->add_flag("--curves", options->curves,
