@@ -32,6 +32,8 @@ struct Parameter {
   double z(double value) const;
   /// z, cut to the bounds.
   double within(double place) const;
+  /// Whether z cannot be below zero: of most amounts of effects.
+  bool one_sided() const { return lower >= centre; }
 };
 
 /// The parameters `keys` of ground_fields() in the given zones, with the start as centre of the prior. theta_scale,
