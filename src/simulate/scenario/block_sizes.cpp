@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "talus/base/text.hpp"
+#include "talus/simulate/scenario/block_class.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
 
 namespace talus {
@@ -119,9 +121,8 @@ std::string rare_class_warning(const Scenario& scenario) {
   const std::vector<double> frequencies = class_frequencies(scenario);
   const auto& classes = scenario.blocks.classes;
   if (frequencies.size() < 2 || frequencies.size() != classes.size()) return {};
-  double weights = 0.0, events = 0.0;
-  for (const BlockClass& c : classes) weights += c.weight;
-  for (const double f : frequencies) events += f;
+  const double weights = total_weight(classes);
+  const double events = std::accumulate(frequencies.begin(), frequencies.end(), 0.0);
   std::vector<std::string> rare;
   for (std::size_t i = 0; i < classes.size(); ++i) {
     const double drawn = static_cast<double>(scenario.released()) * classes[i].weight / weights;
