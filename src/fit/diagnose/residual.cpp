@@ -76,8 +76,7 @@ std::vector<double> sorted_finite(std::vector<double> values) {
 /// Direction in plan of the mean stop, seen from the release; where none stopped, east.
 Eigen::Vector2d forward_of(const MeasuredBlock& block, const BlockRuns& runs) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (std::size_t t = 0; t < runs.trials; ++t)
-    if (!std::isnan(runs.x[t])) sum += Eigen::Vector2d(runs.x[t] - block.x, runs.y[t] - block.y);
+  for (const Eigen::Vector2d& stop : stops_of(runs)) sum += stop - Eigen::Vector2d(block.x, block.y);
   return sum.norm() > 0.0 ? Eigen::Vector2d(sum.normalized()) : Eigen::Vector2d::UnitX();
 }
 

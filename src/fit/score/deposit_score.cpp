@@ -21,13 +21,6 @@ constexpr std::size_t kStopsCompared = 100;  // of each block: more cost time an
 
 using Places = std::vector<Eigen::Vector2d>;
 
-Places stops_of(const BlockRuns& runs) {
-  Places places;
-  for (std::uint32_t t = 0; t < runs.trials; ++t)
-    if (!std::isnan(runs.x[t])) places.emplace_back(runs.x[t], runs.y[t]);
-  return places;
-}
-
 std::size_t class_of(const Campaign& campaign, const MeasuredBlock& block) {
   return class_of(*campaign.deposits, equivalent_diameter(block.mass, block.density));
 }
