@@ -183,7 +183,7 @@ FittedCandidate EffectFits::fit_effect(const FittedModel& base, const EffectVerd
   out.statistic = verdict.best.statistic;
   out.parameters = candidate.parameters;
   out.tested = candidate.tested;
-  const auto asked = static_cast<double>(std::count(rows_.begin(), rows_.end(), true));
+  const auto asked = static_cast<double>(count_of_rows(rows_));
   out.price = rules.price * (static_cast<double>(candidate.parameters.size()) + candidate.searched) / asked;
   out.place_price = rules.price * candidate.searched / asked;
   out.family = family;

@@ -66,7 +66,7 @@ JointFits::JointFits(std::span<const Site> sites, const DiagnoseOptions& options
 
 std::size_t JointFits::blocks() const {
   std::size_t count = 0;
-  for (const std::vector<bool>& rows : rows_) count += static_cast<std::size_t>(std::ranges::count(rows, true));
+  for (const std::vector<bool>& rows : rows_) count += count_of_rows(rows);
   return count;
 }
 

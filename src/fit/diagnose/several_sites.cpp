@@ -15,8 +15,7 @@ namespace {
 using Eigen::VectorXd;
 
 std::size_t fitting_blocks(const Campaign& campaign) {
-  const std::vector<bool> rows = fitting_rows(campaign);
-  return static_cast<std::size_t>(std::ranges::count(rows, true));
+  return count_of_rows(fitting_rows(campaign));
 }
 
 /// Options with the trials of so many blocks.
