@@ -25,11 +25,9 @@ std::vector<double> weighted_groups(const Score& score, std::span<const double> 
   return sum;
 }
 
-Interval middle(std::vector<double> values) {
+Interval middle_of_known(std::vector<double> values) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
-  if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  return {quantile(values, kTail), quantile(values, 1.0 - kTail)};
+  return middle_of(std::move(values));
 }
 
 }  // namespace
@@ -65,7 +63,7 @@ Difference difference(const Score& before, const Score& after, std::span<const s
     const std::vector<double> weight = bootstrap_weights(streams, draw, seed);
     d.draws.push_back(weighted_total(after, weight) - weighted_total(before, weight));
   }
-  d.interval = middle(d.draws);
+  d.interval = middle_of_known(d.draws);
   return d;
 }
 
@@ -80,7 +78,7 @@ Difference mean_difference(std::span<const Score> before, std::span<const Score>
     mean.mean += share * one.mean;
     for (std::size_t draw = 0; draw < one.draws.size(); ++draw) mean.draws[draw] += share * one.draws[draw];
   }
-  mean.interval = middle(mean.draws);
+  mean.interval = middle_of_known(mean.draws);
   return mean;
 }
 

@@ -24,12 +24,6 @@ void runouts_anywhere(const Campaign& campaign, const MeasuredBlock& block, std:
     if (const double distance = run_out(campaign, place).distance; !std::isnan(distance)) out.push_back(distance);
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return kNotGiven;
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
-}
-
 }  // namespace
 
 double runout_of(const Campaign& campaign, const MeasuredBlock& block) {
