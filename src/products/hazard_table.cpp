@@ -1,6 +1,5 @@
 #include "talus/products/hazard_table.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
