@@ -12,6 +12,7 @@ namespace talus {
 namespace {
 
 constexpr std::size_t kFewestDrawn = 6;  // groups of blocks whose choice a bootstrap can vary
+constexpr std::uint64_t kDifferenceSeed = 1;
 
 /// The weighted mean of each group; NaN for one of no weight.
 std::vector<double> weighted_groups(const Score& score, std::span<const double> weight) {
@@ -57,10 +58,10 @@ std::vector<double> bootstrap_weights(std::span<const std::uint32_t> streams, st
 }
 
 Difference difference(const Score& before, const Score& after, std::span<const std::uint32_t> streams,
-                      std::uint32_t draws, std::uint64_t seed) {
+                      std::uint32_t draws) {
   Difference d{after.total - before.total, {}, {}};
   for (std::uint32_t draw = 0; draw < draws; ++draw) {
-    const std::vector<double> weight = bootstrap_weights(streams, draw, seed);
+    const std::vector<double> weight = bootstrap_weights(streams, draw, kDifferenceSeed);
     d.draws.push_back(weighted_total(after, weight) - weighted_total(before, weight));
   }
   d.interval = middle_of_known(d.draws);

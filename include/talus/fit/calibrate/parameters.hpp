@@ -50,9 +50,9 @@ inline constexpr double kLeastStart = 0.01;
 /// and its interval would be one around another start.
 void check_start(std::span<const Parameter> parameters, const Model& start);
 
-/// The zones that enough simulated paths of the asked blocks touch: at least `share` of them. Size: zones of the
+/// The zones that enough simulated paths of the asked blocks touch: at least 5 % of them. Size: zones of the
 /// campaign; an impact in a band of other ground counts for the zone under the band.
-std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs, double share = 0.05);
+std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs);
 
 /// A model with the free parameters at z.
 Model model_at(const Model& start, std::span<const Parameter> free, const Eigen::VectorXd& z);
