@@ -8,6 +8,7 @@
 #include "talus/base/expect.hpp"
 #include "talus/base/random.hpp"
 #include "talus/base/sample.hpp"
+#include "talus/products/interval.hpp"
 
 namespace talus {
 namespace {

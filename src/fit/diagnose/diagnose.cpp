@@ -8,9 +8,9 @@
 #include "effect_fits.hpp"
 #include "outer_folds.hpp"
 #include "repeated_fits.hpp"
+#include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/detection_limits.hpp"
 #include "talus/fit/diagnose/families.hpp"
-#include "talus/fit/diagnose/undeclared_places.hpp"
 
 namespace talus {
 namespace {

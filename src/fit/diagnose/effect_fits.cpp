@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "talus/fit/diagnose/candidates.hpp"
+
 namespace talus {
 namespace {
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "talus/fit/diagnose/candidates.hpp"
+
 namespace talus {
 namespace {
 

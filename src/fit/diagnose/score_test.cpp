@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "null_scores.hpp"
+#include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/corrected.hpp"
 #include "talus/fit/diagnose/projection.hpp"
 #include "talus/fit/diagnose/residual.hpp"

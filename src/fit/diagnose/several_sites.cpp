@@ -5,6 +5,7 @@
 #include "choice.hpp"
 #include "joint_fits.hpp"
 #include "outer_folds.hpp"
+#include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/detection_limits.hpp"
 #include "talus/fit/diagnose/diagnose.hpp"
 #include "talus/fit/diagnose/families.hpp"

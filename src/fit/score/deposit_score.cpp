@@ -8,6 +8,7 @@
 #include "talus/base/expect.hpp"
 #include "talus/fit/campaign/block_draws.hpp"
 #include "talus/fit/campaign/deposits.hpp"
+#include "talus/fit/score/fair_scores.hpp"
 #include "talus/fit/score/holm.hpp"
 
 namespace talus {

@@ -9,6 +9,7 @@
 #include "score_rows.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/fit/score/deposit_score.hpp"
+#include "talus/fit/score/fair_scores.hpp"
 
 namespace talus {
 namespace {

@@ -6,6 +6,7 @@
 #include "fitting_values.hpp"
 #include "talus/base/sample.hpp"
 #include "talus/fit/campaign/deposits.hpp"
+#include "talus/fit/score/fair_scores.hpp"
 
 namespace talus {
 namespace {

@@ -10,6 +10,7 @@
 #include "repeated_report.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
+#include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/families.hpp"
 
 namespace talus::io {

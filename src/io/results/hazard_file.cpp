@@ -9,7 +9,6 @@
 #include "hazard_stream.hpp"
 #include "io/files/json.hpp"
 #include "io/files/own_files.hpp"
-#include "io/gdal/dataset.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
