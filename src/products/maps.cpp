@@ -114,7 +114,7 @@ auto quiet_values(std::shared_ptr<const QuietRegions> quiet, std::vector<double>
   };
 }
 
-/// What the cells of a window where nothing happens have in common.
+/// State of a window where nothing happens.
 Quiet quiet_terrain(const Raster<float>& heights, const CellWindow& window) {
   heights.values.memory().keep_below_limit();
   std::size_t missing = 0;

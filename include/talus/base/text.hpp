@@ -23,7 +23,7 @@ std::string significant(double value, int digits);
 /// A number for a reader: as `significant`, but with all digits before its point: "1235000", not "1.235e+06".
 std::string with_digits(double value, int digits);
 
-/// A law says 1e-280 as easily as this, and no data can.
+/// Smallest share that is stated [-]: a fitted law gives 1e-280 as well, but no data can support it.
 inline constexpr double kSmallestShare = 1e-9;
 
 /// A share in percent with at most `digits` significant digits: "21.6 %" for 0.2158 and 3; "below 1e-07 %" for less

@@ -16,7 +16,7 @@ enum class Quiet : std::uint8_t {
   No          ///< neither, or it is not known
 };
 
-/// What the cells of a window where nothing happens have in common. @param terrain  number of them with terrain
+/// State of a window where nothing happens. @param terrain  number of its cells with terrain
 Quiet quiet_of(std::size_t terrain, const CellWindow& window);
 
 /// Where nothing happens, by regions of 64 x 64 cells: most of a large map. The values of such a part are known without

@@ -91,7 +91,7 @@ bool of_one_block(const VisitBatch& batch, std::uint16_t first, std::uint16_t se
   return std::all_of(&all[first] + 1, &all[second] + 1, [](const VisitBatch::Trajectory& t) { return t.piece; });
 }
 
-/// How paths end in a cell.
+/// Ends of paths in a cell.
 struct PathEnds {
   bool deposited = false, trapped = false, left = false;
 };
