@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "talus/base/bounds.hpp"

@@ -322,14 +322,11 @@ void add_hazard(CLI::App& app, Action& action) {
   add_progress(*command, options->progress);
   add_quiet(*command, options->quiet);
   command->footer(
-      "Examples:\n  talus hazard result\n  talus hazard result --width 10 --curves --objects houses.gpkg\n\nA later "
-      "hazard "
-      "--overwrite replaces the earlier one as a whole: ask for all at once.\nWrites into the "
-      "folder: annual_frequency.tif, return_period_<kJ>.tif, "
-      "intensity_T<years>.tif,\nhazard_class.tif, hazard.json; with --curves hazard_curves.tif. Nothing is simulated "
-      "again, but for --frequency "
-      "and --objects, which "
-      "adds objects.gpkg, objects.csv,\nobjects_curves.csv and "
-      "objects_sources.csv.");
+      "Examples:\n  talus hazard result\n  talus hazard result --width 10 --curves --objects houses.gpkg\n\n"
+      "A later hazard --overwrite replaces the earlier one as a whole: ask for all at once.\n"
+      "Writes into the folder: annual_frequency.tif, return_period_<kJ>.tif, intensity_T<years>.tif,\n"
+      "hazard_class.tif, hazard.json; with --curves hazard_curves.tif. Nothing is simulated again, but for "
+      "--frequency and --objects, which adds objects.gpkg, objects.csv,\n"
+      "objects_curves.csv and objects_sources.csv.");
   command->callback([&action, options] { action = [options] { return hazard(*options); }; });
 }

@@ -110,9 +110,8 @@ std::string guess_warning(std::span<const Preset* const> presets) {
       names.emplace_back(preset->name);
   if (names.empty()) return {};
   return std::string(kGuessWarning) + "ground " + joined(names) +
-         " is for migration and fitted to no data; run-out may be too short (rough types: unsafe) or too long (smooth "
-         "ones): "
-         "see docs/migration.md";
+         " is for migration and fitted to no data; "
+         "run-out may be too short (rough types: unsafe) or too long (smooth ones): see docs/migration.md";
 }
 
 std::string rare_class_warning(const Scenario& scenario) {
