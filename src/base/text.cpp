@@ -5,9 +5,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <numeric>
+#include <system_error>
 
+#include "talus/base/bounds.hpp"
 #include "talus/base/expect.hpp"
 
 namespace talus {
@@ -58,8 +59,15 @@ std::string with_digits(double value, int digits) {
 }
 
 double number_in(std::string_view text) {
-  double number = std::numeric_limits<double>::quiet_NaN();
+  double number = kNotGiven;
   std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+std::optional<double> decimal_number(std::string_view text) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return number;
 }
 

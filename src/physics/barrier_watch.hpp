@@ -1,8 +1,8 @@
 #pragma once
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
+#include "talus/base/bounds.hpp"
 #include "talus/physics/barriers.hpp"
 #include "talus/physics/flight.hpp"
 #include "talus/physics/slide.hpp"
@@ -75,8 +75,8 @@ class BarrierWatch {
 
   const World& world_;
   std::size_t first_vertex_ = 0, first_span_ = 0;
-  double length_ = 0.0, plan_length_ = 0.0;                              // of the path before the leg [m]
-  Eigen::Vector2d broken_at_ = Eigen::Vector2d::Constant(std::nan(""));  // where a barrier broke last
+  double length_ = 0.0, plan_length_ = 0.0;                           // of the path before the leg [m]
+  Eigen::Vector2d broken_at_ = Eigen::Vector2d::Constant(kNotGiven);  // where a barrier broke last
   std::size_t met_here_ = 0;  // the meetings of the path from this one on: the way from there does not meet them again
 };
 

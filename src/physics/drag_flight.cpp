@@ -15,22 +15,13 @@ double plan_squared(const Vec3& velocity) {
   return velocity.x() * velocity.x() + velocity.y() * velocity.y();
 }
 
-/// The way in plan of a motion, if it goes on with the same heading.
-PlanWay plan_way(const Motion& start, double length) {
-  const Eigen::Vector2d velocity = start.velocity.head<2>();
-  const double speed = velocity.norm();
-  PlanWay way{start.position.head<2>(), Eigen::Vector2d::Zero(), length};
-  if (speed > 0.0) way.heading = velocity / speed;
+/// A straight way in plan from a place in the direction of a vector; no heading where that has none in plan.
+PlanWay plan_way(const Vec3& from, const Vec3& direction, double length) {
+  const Eigen::Vector2d along = direction.head<2>();
+  const double size = along.norm();
+  PlanWay way{from.head<2>(), Eigen::Vector2d::Zero(), length};
+  if (size > 0.0) way.heading = along / size;
   return way;
-}
-
-/// The straight way in plan between two places.
-PlanWay way_between(const Vec3& from, const Vec3& to) {
-  const Eigen::Vector2d way = (to - from).head<2>();
-  const double length = way.norm();
-  PlanWay out{from.head<2>(), Eigen::Vector2d::Zero(), length};
-  if (length > 0.0) out.heading = way / length;
-  return out;
 }
 
 /// Constant drag rates that do in a piece what drag does [1/s].
@@ -163,7 +154,8 @@ FlightEnd DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, c
   double time = longest_piece(site, motion);
   if (site.stems) {
     const double speed = std::sqrt(plan_squared(motion.velocity));
-    time = std::min(time, stems_->way_left(plan_way(motion, speed * time), body.diameter) / speed);
+    time = std::min(time,
+                    stems_->way_left(plan_way(motion.position, motion.velocity, speed * time), body.diameter) / speed);
   }
   Piece piece{start, at, grounded, site.drag, path.spans.size(), path.length, path.plan_length};
   FlightEnd end = piece.fly(world_.surface, time, time, motion, at, path);
@@ -184,7 +176,7 @@ FlightEnd DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, c
       path.spans.back().rise_to = static_cast<float>(motion.velocity.z());
     }
   }
-  const PlanWay gone = plan_way(start, (motion.position - start.position).head<2>().norm());
+  const PlanWay gone = plan_way(start.position, start.velocity, (motion.position - start.position).head<2>().norm());
   const bool at_stem = site.stems && stems_->go(gone, body.diameter);
   if (met) {  // a stem at the same place is met by the next piece
     watch->act(*met, body, motion, path);
@@ -220,7 +212,8 @@ std::optional<FlightEnd> DragFlight::fly_clear(Motion& motion, PatchIndex& at, b
   const double length = path.length, plan_length = path.plan_length;
   const FlightEnd end = talus::fly(world_.surface, landed, landed_at, grounded, path);
   const double way = (landed.position - motion.position).head<2>().norm();
-  bool met = stems_ && stems_->of_list() && stems_->way_left(plan_way(motion, way), body.diameter) <= way;
+  bool met = stems_ && stems_->of_list() &&
+             stems_->way_left(plan_way(motion.position, motion.velocity, way), body.diameter) <= way;
   for (std::size_t i = first_span; !met && i < path.spans.size(); ++i) met = in_a_stand(path.spans[i].patch);
   if (met) {
     path.spans.resize(first_span), path.length = length, path.plan_length = plan_length;
@@ -255,7 +248,8 @@ void DragFlight::after_slide(const Motion& before, const Block& body, Motion& mo
   if (site.drag.any())
     motion.velocity *= exponential(-site.drag.at(motion.velocity.norm()) * (motion.time - before.time));
   if (!site.stems) return;
-  const PlanWay gone = way_between(before.position, motion.position);
+  const Vec3 slid = motion.position - before.position;
+  const PlanWay gone = plan_way(before.position, slid, slid.head<2>().norm());
   stems_->way_left(gone, body.diameter);
   if (stems_->go(gone, body.diameter) && meet_stem(gone, body, motion)) path.vertices.push_back({motion, Event::Stem});
 }

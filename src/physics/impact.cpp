@@ -1,9 +1,5 @@
 #include "talus/physics/impact.hpp"
 
-#include <algorithm>
-#include <cmath>
-
-#include "talus/base/elementary.hpp"
 #include "talus/base/expect.hpp"
 
 namespace talus {

@@ -135,7 +135,7 @@ double height_of_energy(const Motion& motion) {
   return motion.position.z() + motion.velocity.squaredNorm() / (2.0 * kGravity);
 }
 
-/// What the digits of a double leave open in it [m]; much at thousands of metres per second.
+/// Rounding error of `height_of_energy` [m]: large at thousands of metres per second.
 [[maybe_unused]] double rounding_of_energy(const Motion& motion) {
   return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(height_of_energy(motion));
 }

@@ -94,9 +94,7 @@ double HazardCurve::side(std::size_t i, Side which) const {
 }
 
 Bounded HazardCurve::exceedance_of(double energy) const {
-  const auto& thresholds = rules_.bins.thresholds();
-  const auto known = std::ranges::find(thresholds, energy);
-  if (known != thresholds.end()) return exceedance(static_cast<std::size_t>(known - thresholds.begin()));
+  if (const auto threshold = rules_.bins.threshold_at(energy)) return exceedance(*threshold);
   const std::size_t last = sums_.size() - 1;
   std::size_t i = 0;
   while (i < last && rules_.bins.edge(first_ + static_cast<int>(i) + 1) <= energy) ++i;
@@ -132,7 +130,7 @@ double HazardCurve::energy_of(double frequency, Side which) const {
 }
 
 Bounded HazardCurve::energy_once_in(double years) const {
-  const double once = (1.0 - 1e-12) / years;  // a frequency is a sum: its last bits must not decide
+  const double once = kOnce / years;
   return {energy_of(once, Side::Value), energy_of(once, Side::Low), energy_of(once, Side::High)};
 }
 

@@ -7,8 +7,6 @@
 namespace talus {
 namespace {
 
-constexpr double kOnce = 1.0 - 1e-12;  // a frequency is a sum: its last bits must not decide
-
 bool ascend(const std::vector<double>& values) {
   return !values.empty() && values.front() > 0.0 &&
          std::ranges::adjacent_find(values, std::ranges::greater_equal{}) == values.end();

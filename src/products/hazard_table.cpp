@@ -1,6 +1,5 @@
 #include "talus/products/hazard_table.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -144,18 +143,15 @@ const std::vector<HazardRaster>& hazard_rasters() {
 
 Bounded HazardPlace::exceedance_of(double energy) const {
   if (curve != nullptr) return curve->exceedance_of(energy);
-  const auto& thresholds = rules.bins.thresholds();
-  const auto known = std::ranges::find(thresholds, energy);
-  TALUS_EXPECT(known != thresholds.end(), "without a curve the limits of the matrix are thresholds");
-  return levels[static_cast<std::size_t>(known - thresholds.begin()) + 1];
+  const auto threshold = rules.bins.threshold_at(energy);
+  TALUS_EXPECT(threshold, "without a curve the limits of the matrix are thresholds");
+  return levels[*threshold + 1];
 }
 
 std::vector<double> energies_of_curves(const HazardRules& rules, const ObjectWidth& object) {
-  const auto& thresholds = rules.bins.thresholds();
   std::vector<double> energies;
   for (const CurveEnergy& of : curve_energies(rules.bins))
-    if (!(object.width > 0.0) || of.energy == 0.0 || std::ranges::count(thresholds, of.energy) > 0)
-      energies.push_back(of.energy);
+    if (!(object.width > 0.0) || of.energy == 0.0 || rules.bins.threshold_at(of.energy)) energies.push_back(of.energy);
   return energies;
 }
 

@@ -114,7 +114,7 @@ auto quiet_values(std::shared_ptr<const QuietRegions> quiet, std::vector<double>
   };
 }
 
-/// What the cells of a window where nothing happens have in common.
+/// State of a window where nothing happens.
 Quiet quiet_terrain(const Raster<float>& heights, const CellWindow& window) {
   heights.values.memory().keep_below_limit();
   std::size_t missing = 0;
@@ -128,13 +128,11 @@ Quiet quiet_terrain(const Raster<float>& heights, const CellWindow& window) {
 /// For each region, whether blocks are released in it.
 std::vector<bool> regions_of_sources(const Scenario& scenario) {
   const Grid& grid = scenario.surface.grid();
-  const int across = (grid.columns + kRegionSide - 1) / kRegionSide, up = (grid.rows + kRegionSide - 1) / kRegionSide;
-  std::vector<bool> regions(static_cast<std::size_t>(across) * static_cast<std::size_t>(up));
-  for (const SourceCell& source : scenario.sources) {
-    const int column = std::clamp(grid.column_of(source.x), 0, grid.columns - 1) / kRegionSide;
-    const int row = std::clamp(grid.row_of(source.y), 0, grid.rows - 1) / kRegionSide;
-    regions[static_cast<std::size_t>(row) * static_cast<std::size_t>(across) + static_cast<std::size_t>(column)] = true;
-  }
+  const Regions layout(grid);
+  std::vector<bool> regions(layout.count());
+  for (const SourceCell& source : scenario.sources)
+    regions[layout.of_cell(std::clamp(grid.column_of(source.x), 0, grid.columns - 1),
+                           std::clamp(grid.row_of(source.y), 0, grid.rows - 1))] = true;
   return regions;
 }
 

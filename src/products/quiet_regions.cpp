@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "talus/simulate/plan/region.hpp"
-
 namespace talus {
 
 Quiet quiet_of(std::size_t terrain, const CellWindow& window) {
@@ -12,7 +10,7 @@ Quiet quiet_of(std::size_t terrain, const CellWindow& window) {
 
 QuietRegions::QuietRegions(const Grid& grid,
                            const std::function<Quiet(std::size_t region, const CellWindow& window)>& look)
-    : across_((grid.columns + kRegionSide - 1) / kRegionSide) {
+    : layout_(grid) {
   for (int row = 0; row < grid.rows; row += kRegionSide)
     for (int column = 0; column < grid.columns; column += kRegionSide)
       regions_.push_back(look(regions_.size(), {column, row, std::min(kRegionSide, grid.columns - column),
@@ -20,16 +18,12 @@ QuietRegions::QuietRegions(const Grid& grid,
 }
 
 Quiet QuietRegions::of(const CellWindow& window) const {
-  const auto region = [&](int column, int row) {
-    return regions_[static_cast<std::size_t>(row) * static_cast<std::size_t>(across_) +
-                    static_cast<std::size_t>(column)];
-  };
   const int west = window.column / kRegionSide, east = (window.column + window.columns - 1) / kRegionSide;
   const int south = window.row / kRegionSide, north = (window.row + window.rows - 1) / kRegionSide;
-  const Quiet first = region(west, south);
+  const Quiet first = regions_[layout_.number(west, south)];
   for (int row = south; row <= north; ++row)
     for (int column = west; column <= east; ++column)
-      if (region(column, row) != first) return Quiet::No;
+      if (regions_[layout_.number(column, row)] != first) return Quiet::No;
   return first;
 }
 

@@ -8,6 +8,7 @@
 #include "talus/base/expect.hpp"
 #include "talus/base/random.hpp"
 #include "talus/base/sample.hpp"
+#include "talus/products/interval.hpp"
 
 namespace talus {
 namespace {
@@ -58,12 +59,11 @@ Weibull fit_to_standard(std::size_t n, std::uint32_t draw, std::uint64_t seed, s
 }
 
 template <class Value>
-Interval middle(const std::vector<WeibullDraw>& draws, Value value) {
+Interval middle_of_draws(const std::vector<WeibullDraw>& draws, Value value) {
   std::vector<double> values;
   values.reserve(draws.size());
   for (const WeibullDraw& draw : draws) values.push_back(value(draw));
-  std::sort(values.begin(), values.end());
-  return {quantile(values, kTail), quantile(values, 1.0 - kTail)};
+  return middle_of(std::move(values));
 }
 
 /// Bootstrap sample of the law behind n values with this fit: the pivots of simulated fits, solved for shape and scale.
@@ -124,8 +124,8 @@ WeibullFit fit_weibull(std::span<const double> values, const BootstrapOptions& o
   fit.distance = anderson_darling(positive, fit.law);
   fit.draws = laws_of(fit.law, positive.size(), options);
   draw_shares(fit, options.seed);
-  fit.shape = middle(fit.draws, [](const WeibullDraw& draw) { return draw.law.shape; });
-  fit.scale = middle(fit.draws, [](const WeibullDraw& draw) { return draw.law.scale; });
+  fit.shape = middle_of_draws(fit.draws, [](const WeibullDraw& draw) { return draw.law.shape; });
+  fit.scale = middle_of_draws(fit.draws, [](const WeibullDraw& draw) { return draw.law.scale; });
   return fit;
 }
 
@@ -134,7 +134,7 @@ Exceedance exceedance(const WeibullFit& fit, std::span<const double> values, dou
   const auto above =
       static_cast<std::uint64_t>(std::count_if(values.begin(), values.end(), [&](double v) { return v > limit; }));
   const auto by = [&](const WeibullDraw& draw) { return draw.positive * draw.law.exceedance(limit); };
-  return {by({fit.law, positive}), middle(fit.draws, by),
+  return {by({fit.law, positive}), middle_of_draws(fit.draws, by),
           static_cast<double>(above) / static_cast<double>(values.size()),
           probability_bounds(above, values.size(), kConfidence)};
 }

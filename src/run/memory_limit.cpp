@@ -3,8 +3,8 @@
 #include <gdal.h>
 
 #include <algorithm>
-#include <cstdio>
 
+#include "talus/base/bounds.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
@@ -13,11 +13,9 @@ namespace talus::run {
 
 std::size_t memory_limit_of(const std::string& text, int threads) {
   if (text.empty()) return 0;
-  double number = 0.0;
-  char unit = ' ', end = ' ';
-  const int read = std::sscanf(text.c_str(), "%lf%c%c", &number, &unit, &end);
-  const double factor = unit == 'G' ? 1e9 : unit == 'M' ? 1e6 : 0.0;
-  if (read != 2 || factor == 0.0 || !(number * factor <= 1e15))
+  const double factor = text.back() == 'G' ? 1e9 : text.back() == 'M' ? 1e6 : kNotGiven;
+  const double number = decimal_number(std::string_view(text).substr(0, text.size() - 1)).value_or(kNotGiven);
+  if (!(number * factor <= 1e15))
     throw InputError("--memory '" + text + "': must be a number with M or G (10^6 or 10^9 bytes), such as 500M or 2G");
   const double least = std::max(200.0, 140.0 + 30.0 * threads);  // measured
   if (!(number * factor >= 1e6 * least))

@@ -10,7 +10,6 @@
 #include "talus/base/text.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/run/memory_limit.hpp"
-#include "talus/run/write_maps.hpp"
 #include "talus/simulate/tally_of.hpp"
 
 namespace talus::run {

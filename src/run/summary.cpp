@@ -69,8 +69,8 @@ static std::vector<std::string> warnings_of_ends(const Totals& totals, const std
   };
   tell(totals.left_blocks, io::kWarnedLeftShare, left);
   tell(totals.ended(End::Trapped), io::kWarnedTrappedShare,
-       "were trapped in pits or between walls, on ground too steep to rest on: where these are not in the real "
-       "terrain, " +
+       "were trapped in pits or between walls, on ground too steep to rest on: "
+       "where these are not in the real terrain, " +
            trapped);
   return warnings;
 }

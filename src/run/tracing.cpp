@@ -46,12 +46,12 @@ std::vector<Checkpoint> Tracing::opened() const {
   in_every_process(processes_, [&] {
     if (io::plan_checksum(plan_.loaded) != plan)
       throw InputError(request_.out +
-                       ": the processes of the run have read different files, must be the same on "
-                       "every machine");
+                       ": the processes of the run have read different files, "
+                       "must be the same on every machine");
     if (!fs::is_directory(work))
       throw InputError(request_.out +
-                       ": its folder cannot be seen by every process, must lie on a file system that all "
-                       "machines of the run share");
+                       ": its folder cannot be seen by every process, "
+                       "must lie on a file system that all machines of the run share");
     if (found)
       checkpoints.push_back(resumed(work));
     else
@@ -64,8 +64,8 @@ Checkpoint Tracing::resumed(const fs::path& work) const {
   Checkpoint checkpoint = Checkpoint::opened(work, plan_.loaded, true, processes_);
   if (checkpoint.asked() != plan_.rounds)
     throw InputError(request_.out +
-                     ": what is kept there was begun with other --rounds, --until-error, --above or "
-                     "--most-rounds (" +
+                     ": what is kept there was begun with other "
+                     "--rounds, --until-error, --above or --most-rounds (" +
                      std::to_string(checkpoint.rounds()) +
                      " rounds are done); give the same, or begin anew (--overwrite)");
   checkpoint.require_part(plan_.part, request_.out);

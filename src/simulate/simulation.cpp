@@ -6,9 +6,11 @@
 #include <atomic>
 #include <cmath>
 #include <deque>
+#include <mutex>
 #include <numeric>
 
 #include "base/in_threads.hpp"
+#include "rows_in_order.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/physics/tracer.hpp"
 #include "talus/simulate/plan/plan.hpp"
@@ -26,42 +28,6 @@ double thread_cpu_seconds() {
 
 /// Most units of a chunk if several processes share the work: small chunks keep the wait at the end short.
 constexpr std::uint64_t kUnitsPerChunk = 32;
-
-/// The rows of one unit of work (some blocks of one source cell) for the sinks.
-struct Rows {
-  std::uint64_t unit;
-  std::vector<StopRow> stops;
-  std::vector<Crossing> crossings;
-  std::vector<RecordedPath> paths;
-};
-
-/// Hands the rows to the sinks in the order in which the units were taken, whichever worker finishes first.
-class InOrder {
- public:
-  explicit InOrder(const Sinks& sinks) : sinks_(sinks) {}
-
-  void hand_in(std::uint64_t number, Rows&& rows) {
-    const std::lock_guard guard(mutex_);
-    if (handing_out_) return;  // a sink threw: none is called again
-    handing_out_ = true;
-    waiting_.emplace(number, std::move(rows));
-    for (auto it = waiting_.begin(); it != waiting_.end() && it->first == next_; it = waiting_.erase(it), ++next_) {
-      if (sinks_.unit) sinks_.unit(it->second.unit);
-      if (sinks_.stops) sinks_.stops(it->second.stops);
-      if (sinks_.crossings && !it->second.crossings.empty()) sinks_.crossings(it->second.crossings);
-      if (sinks_.paths)
-        for (const RecordedPath& path : it->second.paths) sinks_.paths(path);
-    }
-    handing_out_ = false;
-  }
-
- private:
-  const Sinks& sinks_;
-  std::mutex mutex_;
-  std::map<std::uint64_t, Rows> waiting_;
-  std::uint64_t next_ = 0;
-  bool handing_out_ = false;  // stays true after an exception
-};
 
 void add_way(Totals& totals, const Path& path) {
   totals.barriers.add(path);
@@ -123,7 +89,7 @@ class Simulation::Advance {
     std::uint32_t left;               // blocks that are not done
     std::uint32_t count;              // blocks
     std::shared_ptr<SourceReach> reach;
-    Rows rows;
+    UnitRows rows;
   };
   class Worker;
 
@@ -158,7 +124,7 @@ class Simulation::Advance {
   Simulation& run_;
   int lanes_;
   const Scenario& scenario_;
-  InOrder rows_in_order_;
+  RowsInOrder rows_in_order_;
   WorkUnits work_units_;
   std::atomic<bool> failed_{false};
   std::mutex mutex_;  // guards the members below

@@ -1,6 +1,5 @@
 #include "talus/terrain/dem_gaps.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 

@@ -1,8 +1,8 @@
 #include "talus/terrain/source_slope.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "talus/base/bounds.hpp"
 #include "talus/base/vector.hpp"
 
 namespace talus {
@@ -20,8 +20,7 @@ double horn(const Grid& grid, Height z) {
 
 double horn_slope(const Raster<float>& heights, int column, int row) {
   const Grid& grid = heights.grid;
-  if (!grid.contains(column - 1, row - 1) || !grid.contains(column + 1, row + 1))
-    return std::numeric_limits<double>::quiet_NaN();
+  if (!grid.contains(column - 1, row - 1) || !grid.contains(column + 1, row + 1)) return kNotGiven;
   const auto z = [&](int east, int north) { return static_cast<double>(heights.at(column + east, row + north)); };
   const double centre = 0.0 * z(0, 0);  // NaN if the cell itself is missing: Horn's formula does not read it
   return horn(grid, z) + centre;
@@ -34,8 +33,7 @@ double true_area(const Grid& grid, double tangent) {
 double true_area(const Raster<float>& heights, int column, int row) {
   const Grid& grid = heights.grid;
   const auto given = [&](int east, int north) {
-    return grid.contains(column + east, row + north) ? double{heights.at(column + east, row + north)}
-                                                     : std::numeric_limits<double>::quiet_NaN();
+    return grid.contains(column + east, row + north) ? double{heights.at(column + east, row + north)} : kNotGiven;
   };
   const double here = given(0, 0);
   const auto side = [&](int east, int north) {

@@ -381,7 +381,7 @@ class Parts(KeptRuns, RunCase):
         self.run_scenario("limited", "--memory", "200M", "--threads", "1", "--checkpoint", "0.05")
         self.assert_same("whole", "limited")
         start = ["run", self.path("s.toml"), "-o", self.path("x"), "--threads", "1", "--memory"]
-        for text in ("2", "2X", "G", "500MB", "500m"):
+        for text in ("2", "2X", "G", "500MB", "500m", " 500M", "0x1p29M"):
             self.fails(2, "--memory", text, "with M or G", arguments=[*start, text])
         self.fails(2, "--memory", "1 thread:", "200M at least", arguments=[*start, "1M"])
 

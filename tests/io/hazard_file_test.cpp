@@ -53,6 +53,15 @@ class HazardFile : public test::ScenarioFile {
     return {std::istreambuf_iterator<char>(back), {}};
   }
 
+  /// The content of the file of the run.
+  std::string unpacked() {
+    std::string plain(1U << 20U, ' ');
+    VSILFILE* file = VSIFOpenL(("/vsigzip/" + path(kHazardFile)).c_str(), "rb");
+    plain.resize(VSIFReadL(plain.data(), 1, plain.size(), file));
+    VSIFCloseL(file);
+    return plain;
+  }
+
   LoadedScenario loaded_;
   Totals totals_;
   Tally tally_{loaded_.scenario.surface.grid(), loaded_.scenario.output.energy_thresholds,
@@ -105,10 +114,7 @@ TEST_F(HazardFile, DamagedForeignOrLaterFilesAreRefused) {
   std::string changed = whole;
   changed[changed.size() / 2] = static_cast<char>(changed[changed.size() / 2] ^ 4);
   refused(changed, "is damaged");
-  std::string plain(1U << 20U, ' ');
-  VSILFILE* file = VSIFOpenL(("/vsigzip/" + path(kHazardFile)).c_str(), "rb");
-  plain.resize(VSIFReadL(plain.data(), 1, plain.size(), file));
-  VSIFCloseL(file);
+  std::string plain = unpacked();
   ASSERT_LT(plain.size(), 1U << 20U);
   plain[plain.size() - 80] = static_cast<char>(plain[plain.size() - 80] ^ 1);  // packed well, but another number
   refused(packed(plain), "is damaged");
@@ -116,6 +122,27 @@ TEST_F(HazardFile, DamagedForeignOrLaterFilesAreRefused) {
   refused(packed(std::string("talus-hazard") + std::string("\x04\0\0\0", 4)), "later version of Talus (format 4, this");
   refused(packed(std::string("talus-hazard") + std::string("\x01\0\0\0", 4)), "earlier version of Talus (format 1,");
   refused("", "is");
+}
+
+/// A header with a number that no run writes is refused before anything is made of it.
+TEST_F(HazardFile, ImpossibleHeadersAreRefused) {
+  const std::string whole = unpacked();
+  for (const auto& [key, value] : std::initializer_list<std::pair<std::string, std::string>>{
+           {"total", "0"}, {"largest", "0"}, {"trajectories", "0"}, {"largest_diameter", "-1"}}) {
+    std::string plain = whole;
+    const std::size_t from = plain.find('"' + key + "\":") + key.size() + 3, size = plain.find(',', from) - from;
+    ASSERT_GT(size, value.size()) << key;
+    plain.replace(from, size, std::string(size - value.size(), ' ') + value);  // the header keeps its length
+    std::ofstream(path("other.gz"), std::ios::binary) << packed(plain);
+    bool begun = false;
+    expect_input_error(
+        [&] {
+          read_hazard(
+              path("other.gz"), [&](const auto&) { begun = true; }, [](const auto&) {});
+        },
+        {"is damaged"});
+    EXPECT_FALSE(begun) << key;
+  }
 }
 
 TEST_F(HazardFile, ThePlanChangesWithEverySetting) {

@@ -1,7 +1,5 @@
 #include "campaign_command.hpp"
 
-#include <algorithm>
-
 #include "talus/base/error.hpp"
 #include "talus/fit/score/score.hpp"
 #include "talus/io/campaign/model_file.hpp"
@@ -13,8 +11,8 @@ void require_measurements(const std::string& path, const talus::Campaign& campai
   const auto runs = talus::observe(
       campaign, model, {.trials = 1, .threads = 1, .blocks = rows});  // which rows exist depends on no parameter
   if (!talus::score(campaign, runs, rows).groups.empty()) return;
-  throw talus::InputError(path + ": nothing to fit to: " + std::to_string(std::count(rows.begin(), rows.end(), true)) +
-                          " of " + std::to_string(rows.size()) +
+  throw talus::InputError(path + ": nothing to fit to: " + std::to_string(talus::count_of_rows(rows)) + " of " +
+                          std::to_string(rows.size()) +
                           " blocks are not held out, and no quantity (stop, mass, crossing, speed, jump, spin, sample) "
                           "has values of " +
                           std::to_string(talus::kFewestRows) +

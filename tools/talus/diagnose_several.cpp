@@ -24,7 +24,7 @@ void write_results(const OpenedSites& opened, const talus::io::SitesRecord& reco
 }
 
 bool holds_out(const talus::Site& site) {
-  return std::ranges::count(talus::holdout_rows(*site.campaign), true) > 0;
+  return talus::count_of_rows(talus::holdout_rows(*site.campaign)) > 0;
 }
 
 }  // namespace

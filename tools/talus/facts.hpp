@@ -1,6 +1,5 @@
 #pragma once
 #include <CLI/CLI.hpp>
-#include <limits>
 #include <string>
 #include <vector>
 

@@ -310,9 +310,8 @@ void add_hazard(CLI::App& app, Action& action) {
       "m: the maps are for an object of this width (and the diameter of the block) at each place, else for the "
       "cell; with --objects also the width of lines without a field width");
   with(width, number_of(kWidth))->check([](const std::string& text) -> std::string {
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    if (end != text.c_str() && *end == 0 && !talus::fault_of(kWidth, value)) return {};
+    const std::optional<double> value = talus::decimal_number(text);
+    if (value && !talus::fault_of(kWidth, *value)) return {};
     return text + ": must be above 0 and at most 1000 m (width of the object; leave it out for the cell)";
   });
   command->add_flag("--curves", options->curves,
@@ -323,14 +322,11 @@ void add_hazard(CLI::App& app, Action& action) {
   add_progress(*command, options->progress);
   add_quiet(*command, options->quiet);
   command->footer(
-      "Examples:\n  talus hazard result\n  talus hazard result --width 10 --curves --objects houses.gpkg\n\nA later "
-      "hazard "
-      "--overwrite replaces the earlier one as a whole: ask for all at once.\nWrites into the "
-      "folder: annual_frequency.tif, return_period_<kJ>.tif, "
-      "intensity_T<years>.tif,\nhazard_class.tif, hazard.json; with --curves hazard_curves.tif. Nothing is simulated "
-      "again, but for --frequency "
-      "and --objects, which "
-      "adds objects.gpkg, objects.csv,\nobjects_curves.csv and "
-      "objects_sources.csv.");
+      "Examples:\n  talus hazard result\n  talus hazard result --width 10 --curves --objects houses.gpkg\n\n"
+      "A later hazard --overwrite replaces the earlier one as a whole: ask for all at once.\n"
+      "Writes into the folder: annual_frequency.tif, return_period_<kJ>.tif, intensity_T<years>.tif,\n"
+      "hazard_class.tif, hazard.json; with --curves hazard_curves.tif. Nothing is simulated again, but for "
+      "--frequency and --objects, which adds objects.gpkg, objects.csv,\n"
+      "objects_curves.csv and objects_sources.csv.");
   command->callback([&action, options] { action = [options] { return hazard(*options); }; });
 }

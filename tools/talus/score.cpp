@@ -36,7 +36,7 @@ std::vector<talus::io::ScoredRows> scores_of(const std::string& rows, const talu
 void refuse_nothing(const ScoreOptions& options, const talus::Campaign& campaign,
                     const std::vector<talus::io::ScoredRows>& scores) {
   const std::vector<bool> fitting = talus::fitting_rows(campaign);
-  if (std::ranges::count(fitting, true) == 0)
+  if (talus::count_of_rows(fitting) == 0)
     throw talus::InputError(
         options.campaign + ": nothing to score: all " + std::to_string(fitting.size()) +
         " blocks are held out (holdout = 1), must be some that are not: these give the spread of the "

@@ -9,7 +9,6 @@
 #include "talus/io/results/recorded_plan.hpp"
 #include "talus/io/results/write_vectors.hpp"
 #include "talus/simulate/plan/plan.hpp"
-#include "talus/simulate/simulate.hpp"
 
 namespace {
 

@@ -38,9 +38,8 @@ void MpiProcessGroup::wait(std::vector<MPI_Request>& requests) {
     if (!told_ && rank_ == 0 && interrupted() && spins > kSpins + 200) {
       told_ = true;
       say("",
-          "told to end, by the user or because another process of the run has ended; what was kept, if anything, goes "
-          "on "
-          "with the same command and --resume");
+          "told to end, by the user or because another process of the run has ended; "
+          "what was kept, if anything, goes on with the same command and --resume");
     }
   }
   requests.clear();

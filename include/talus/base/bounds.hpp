@@ -4,7 +4,7 @@
 
 namespace talus {
 
-/// Stands for a number that the input does not give.
+/// NaN: a number that is not given, not known or not defined.
 inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
 /// Name, meaning and allowed values of a number of the input, in the units of the files.

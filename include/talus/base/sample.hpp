@@ -1,9 +1,10 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <span>
+#include <vector>
 
+#include "talus/base/bounds.hpp"
 #include "talus/base/expect.hpp"
 
 namespace talus {
@@ -13,7 +14,7 @@ inline constexpr double kTwoSided = 1.959963984540054;      // the same in stand
 
 /// A confidence interval; NaN if it cannot be computed.
 struct Interval {
-  double low = std::numeric_limits<double>::quiet_NaN(), high = std::numeric_limits<double>::quiet_NaN();
+  double low = kNotGiven, high = kNotGiven;
 };
 
 /// Quantile of a sample: the value below which a share of it lies. Linear between order statistics (Hyndman & Fan, type
@@ -27,6 +28,20 @@ inline double quantile(std::span<const double> sorted, double share) {
   const auto below = static_cast<std::size_t>(place);
   const double above = sorted[std::min(below + 1, sorted.size() - 1)];
   return sorted[below] + (place - static_cast<double>(below)) * (above - sorted[below]);
+}
+
+/// Median of a sample; NaN if it is empty.
+inline double median_of(std::vector<double> sample) {
+  if (sample.empty()) return kNotGiven;
+  std::sort(sample.begin(), sample.end());
+  return quantile(sample, 0.5);
+}
+
+/// The middle of a sample, `kConfidence` of it; NaN if it is empty.
+inline Interval middle_of(std::vector<double> sample) {
+  if (sample.empty()) return {};
+  std::sort(sample.begin(), sample.end());
+  return {quantile(sample, kTail), quantile(sample, 1.0 - kTail)};
 }
 
 }  // namespace talus

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,13 +13,17 @@ std::string text_of(double value);
 /// The number at the beginning of a text, whatever the locale of the program; NaN if there is none.
 double number_in(std::string_view text);
 
+/// The decimal number that a whole text is, whatever the locale: "500", "1e3"; nothing if it has blanks, a plus sign,
+/// hexadecimal digits or other letters.
+std::optional<double> decimal_number(std::string_view text);
+
 /// A number for a file with at most `digits` significant digits, like "%.4g" of printf for 4: "0.1235", "1.235e+06".
 std::string significant(double value, int digits);
 
 /// A number for a reader: as `significant`, but with all digits before its point: "1235000", not "1.235e+06".
 std::string with_digits(double value, int digits);
 
-/// A law says 1e-280 as easily as this, and no data can.
+/// Smallest share that is stated [-]: a fitted law gives 1e-280 as well, but no data can support it.
 inline constexpr double kSmallestShare = 1e-9;
 
 /// A share in percent with at most `digits` significant digits: "21.6 %" for 0.2158 and 3; "below 1e-07 %" for less

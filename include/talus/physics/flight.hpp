@@ -72,7 +72,7 @@ double arc_length(const Vec3& v, double duration);
 /// @param grounded   the block starts on the surface of `at` and moves away from it
 /// @param path       gets one `Span` per patch crossed, two where it crosses a crease
 ///
-/// Exact except for rounding; no time step. At most 2 (columns + rows) pieces. docs/physics.md, "Flight".
+/// Exact except for rounding; no time step. At most 2 (columns + rows) + 5 pieces. docs/physics.md, "Flight".
 FlightEnd fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path);
 
 /// A piece of a flight, as above: ends `Aloft` after `longest` [s], >= 0, unless it landed or left before.

@@ -11,6 +11,9 @@ struct Bounded {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
+/// Number of events in a return period, at least: a frequency is a sum, and its last bits must not decide.
+inline constexpr double kOnce = 1.0 - 1e-12;
+
 /// Sums of the weights of the trajectories that were counted.
 struct WeightSums {
   double sum = 0.0;      ///< [1/year]

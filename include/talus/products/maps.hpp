@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "talus/base/sample.hpp"
 #include "talus/products/cell_window.hpp"
 #include "talus/simulate/scenario/scenario.hpp"
 #include "talus/simulate/tally/tally.hpp"

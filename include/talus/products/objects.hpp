@@ -2,7 +2,6 @@
 #include <functional>
 #include <map>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "talus/simulate/tally/hazard_tally.hpp"

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "talus/products/cell_window.hpp"
+#include "talus/simulate/plan/region.hpp"
 #include "talus/terrain/grid.hpp"
 
 namespace talus {
@@ -15,7 +16,7 @@ enum class Quiet : std::uint8_t {
   No          ///< neither, or it is not known
 };
 
-/// What the cells of a window where nothing happens have in common. @param terrain  number of them with terrain
+/// State of a window where nothing happens. @param terrain  number of its cells with terrain
 Quiet quiet_of(std::size_t terrain, const CellWindow& window);
 
 /// Where nothing happens, by regions of 64 x 64 cells: most of a large map. The values of such a part are known without
@@ -28,7 +29,7 @@ class QuietRegions {
   Quiet of(const CellWindow& window) const;
 
  private:
-  int across_ = 0;
+  Regions layout_;
   std::vector<Quiet> regions_;
 };
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "talus/products/interval.hpp"
+#include "talus/base/sample.hpp"
 
 namespace talus {
 

@@ -10,12 +10,11 @@
 namespace talus {
 namespace {
 
-double median_of(const Campaign& campaign, const std::function<double(const MeasuredBlock&)>& value) {
+double median_of_fitting(const Campaign& campaign, const std::function<double(const MeasuredBlock&)>& value) {
   std::vector<double> values;
   for (const MeasuredBlock& block : campaign.blocks)
     if (!block.holdout) values.push_back(value(block));
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
+  return median_of(std::move(values));
 }
 
 std::string full_key(const EffectField& field) {
@@ -37,8 +36,8 @@ std::pair<const EffectEntry*, const EffectField*> sought_number(const std::strin
 }  // namespace
 
 TypicalBlock typical_block(const Campaign& campaign) {
-  return {median_of(campaign, [](const MeasuredBlock& b) { return b.mass; }),
-          median_of(campaign, [](const MeasuredBlock& b) { return equivalent_diameter(b.mass, b.density); })};
+  return {median_of_fitting(campaign, [](const MeasuredBlock& b) { return b.mass; }),
+          median_of_fitting(campaign, [](const MeasuredBlock& b) { return equivalent_diameter(b.mass, b.density); })};
 }
 
 Parameter effect_parameter(const EffectEntry& entry, const EffectField& field, const TypicalBlock& typical) {

@@ -32,12 +32,6 @@ Parameter pooled(const std::vector<const Parameter*>& same) {
 
 }  // namespace
 
-bool JointParameters::shared(std::size_t number) const {
-  return std::ranges::count_if(sites, [number](const std::vector<SiteParameter>& own) {
-           return std::ranges::any_of(own, [number](const SiteParameter& p) { return p.number == number; });
-         }) > 1;
-}
-
 JointParameters joint_parameters(std::span<const std::string> names, std::span<const std::vector<Parameter>> own,
                                  std::span<const std::string> share) {
   std::map<std::string, std::vector<const Parameter*>> shared;  // by key

@@ -11,7 +11,8 @@
 namespace talus {
 namespace {
 
-constexpr double kReach = 2.5;  // bounds of a ground parameter, in sd from its start
+constexpr double kReach = 2.5;          // bounds of a ground parameter, in sd from its start
+constexpr double kTouchedShare = 0.05;  // share of the paths that touch a zone whose ground is fitted
 
 }  // namespace
 
@@ -75,7 +76,7 @@ void check_start(std::span<const Parameter> parameters, const Model& start) {
                        "--parameters, or leave it out of --fit");
 }
 
-std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs, double share) {
+std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs) {
   std::vector<double> hits(campaign.zone_names.size(), 0.0);
   double trials = 0.0;
   for (const BlockRuns& block : runs) {
@@ -85,7 +86,7 @@ std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockR
   }
   std::vector<bool> touched;
   touched.reserve(hits.size());
-  for (const double count : hits) touched.push_back(count > 0.0 && count >= share * trials);
+  for (const double count : hits) touched.push_back(count > 0.0 && count >= kTouchedShare * trials);
   return touched;
 }
 

@@ -13,9 +13,7 @@ constexpr std::uint32_t kOwnDesigns = 10'000;  // places from this number on: no
 void summarise(std::span<const Parameter> free, Uncertainty& out) {
   const Eigen::Index n = out.draws.cols();
   for (Eigen::Index i = 0; i < n; ++i) {
-    std::vector<double> z(out.draws.col(i).begin(), out.draws.col(i).end());
-    std::sort(z.begin(), z.end());
-    const double low = quantile(z, kTail), high = quantile(z, 1.0 - kTail);
+    const auto [low, high] = middle_of({out.draws.col(i).begin(), out.draws.col(i).end()});
     const Parameter& p = free[static_cast<std::size_t>(i)];
     out.intervals.push_back({p.value(low), p.value(high)});
     const double near = 1e-6;  // z of the bounds is rounded

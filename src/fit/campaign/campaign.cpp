@@ -1,5 +1,6 @@
 #include "talus/fit/campaign/campaign.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace talus {
@@ -14,6 +15,10 @@ std::vector<bool> holdout_rows(const Campaign& campaign) {
   std::vector<bool> rows;
   for (const MeasuredBlock& block : campaign.blocks) rows.push_back(block.holdout);
   return rows;
+}
+
+std::size_t count_of_rows(const std::vector<bool>& rows) {
+  return static_cast<std::size_t>(std::ranges::count(rows, true));
 }
 
 bool all_at_rest(const Campaign& campaign, const std::vector<bool>& rows) {

@@ -260,6 +260,13 @@ void release_from_source(const Campaign& campaign, const Words& words, Release& 
 
 }  // namespace
 
+std::vector<Eigen::Vector2d> stops_of(const BlockRuns& runs) {
+  std::vector<Eigen::Vector2d> stops;
+  for (std::size_t t = 0; t < runs.trials; ++t)
+    if (!std::isnan(runs.x[t])) stops.emplace_back(runs.x[t], runs.y[t]);
+  return stops;
+}
+
 Model model_of_preset(const Campaign& campaign, std::string_view preset) {
   Model model;
   model.grounds.assign(std::max<std::size_t>(1, campaign.zone_names.size()), find_preset(preset).ground);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "talus/base/sample.hpp"
 
@@ -14,9 +15,7 @@ Axis axis_of(const Campaign& campaign, std::span<const BlockRuns> runs) {
     if (!block.holdout) release += Eigen::Vector2d(block.x, block.y), released += 1.0;
   release /= released;
   std::vector<Eigen::Vector2d> ends;
-  for (const BlockRuns& r : runs)
-    for (std::size_t t = 0; t < r.trials; ++t)
-      if (!std::isnan(r.x[t])) ends.emplace_back(r.x[t], r.y[t]);
+  for (const BlockRuns& r : runs) std::ranges::copy(stops_of(r), std::back_inserter(ends));
   for (const MeasuredBlock& block : campaign.blocks)
     if (!block.holdout && block.stop) ends.push_back(*block.stop);
   for (const Eigen::Vector2d& end : ends) stop += end, stops += 1.0;

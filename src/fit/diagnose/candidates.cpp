@@ -149,9 +149,7 @@ Candidate merged_candidate(const Campaign& campaign, const Axis& axis, std::span
 Model with(const Model& base, const Candidate& candidate, const Eigen::VectorXd& z) {
   Model model = base;
   candidate.prepare(model);
-  for (std::size_t i = 0; i < candidate.parameters.size(); ++i)
-    candidate.parameters[i].set(model, candidate.parameters[i].value(z[static_cast<Eigen::Index>(i)]));
-  return model;
+  return model_at(model, candidate.parameters, z);
 }
 
 }  // namespace talus

@@ -8,9 +8,9 @@
 #include "effect_fits.hpp"
 #include "outer_folds.hpp"
 #include "repeated_fits.hpp"
+#include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/detection_limits.hpp"
 #include "talus/fit/diagnose/families.hpp"
-#include "talus/fit/diagnose/undeclared_places.hpp"
 
 namespace talus {
 namespace {
@@ -28,8 +28,7 @@ class DiagnosisLoop {
         options_(options),
         rules_(options_.rules),
         fits_(campaign, options_, rows_, [this](double share) { return proceeds(share); }) {
-    const auto fitting = std::count(rows_.begin(), rows_.end(), true);
-    options_.trials = raised_for_few_blocks(options.trials, static_cast<std::size_t>(fitting), rules_);
+    options_.trials = raised_for_few_blocks(options.trials, count_of_rows(rows_), rules_);
     options_.traced = &traced_;
   }
 

@@ -1,5 +1,7 @@
 #include "diagnosis_fits.hpp"
 
+#include <algorithm>
+
 #include "talus/fit/campaign/block_draws.hpp"
 #include "talus/fit/score/joined_scores.hpp"
 
@@ -108,6 +110,10 @@ std::vector<Score> OutOfFold::objectives(const DiagnoseOptions& options, std::ui
     scores.push_back(weigh_groups(joined_score(problem_, runs(how, scoring.folds, rules.folds), scoring)));
   }
   return scores;
+}
+
+double first_amount(const Parameter& parameter, double estimate) {
+  return std::clamp(estimate, parameter.one_sided() ? 0.3 : -2.0, 4.0);
 }
 
 void set_amount(FittedEffect& effect, const Eigen::VectorXd& z, const DiagnosisRules& rules) {

@@ -65,6 +65,10 @@ class OutOfFold {
   LocalModel local_;
 };
 
+/// Amount of an effect at which its fit begins: the estimate of the score test, limited to between a little and four
+/// times what one would notice, the unit of both.
+double first_amount(const Parameter& parameter, double estimate);
+
 /// Sets the amount of an effect. @param z  of all parameters of its fit, its own last
 void set_amount(FittedEffect& effect, const Eigen::VectorXd& z, const DiagnosisRules& rules);
 

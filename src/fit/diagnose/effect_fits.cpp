@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "talus/fit/diagnose/candidates.hpp"
+
 namespace talus {
 namespace {
 
@@ -11,14 +13,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Start of the fit of a candidate: the estimate of the score test, limited to between a little and four times what one
-/// would notice.
+/// Start of the fit of a candidate: about the estimate of the score test.
 VectorXd start_of(const Candidate& candidate, const Verdict& verdict, double noticed) {
   VectorXd z = VectorXd::Zero(static_cast<Index>(candidate.parameters.size()));
   for (Index i = 0; i < verdict.estimate.size(); ++i) {
     const Parameter& p = candidate.parameters[static_cast<std::size_t>(i)];
-    const double low = p.lower >= 0.0 ? 0.3 : -2.0;
-    z[i] = noticed * std::clamp(verdict.estimate[i], low, 4.0);
+    z[i] = noticed * first_amount(p, verdict.estimate[i]);
   }
   return z;
 }
@@ -185,7 +185,7 @@ FittedCandidate EffectFits::fit_effect(const FittedModel& base, const EffectVerd
   out.statistic = verdict.best.statistic;
   out.parameters = candidate.parameters;
   out.tested = candidate.tested;
-  const auto asked = static_cast<double>(std::count(rows_.begin(), rows_.end(), true));
+  const auto asked = static_cast<double>(count_of_rows(rows_));
   out.price = rules.price * (static_cast<double>(candidate.parameters.size()) + candidate.searched) / asked;
   out.place_price = rules.price * candidate.searched / asked;
   out.family = family;

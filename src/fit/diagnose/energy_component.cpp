@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "pooled_products.hpp"
+
 namespace talus {
 namespace {
 
@@ -10,8 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kShrink = 0.1;  // share of the pooled covariances that is taken away
-constexpr double kLeast = 0.1;   // variance below which a crossing says nothing: it happens always or never
+constexpr double kLeast = 0.1;  // variance below which a crossing says nothing: it happens always or never
 
 bool carries_energy(const Observable& o) {
   return o.kind != Observable::Kind::Lateral && o.kind != Observable::Kind::Mass;
@@ -22,36 +23,24 @@ double crossing_score(double residual, double p) {
   return normal_quantile(residual > 0.0 ? 1.0 - 0.5 * p : 0.5 * (1.0 - p));
 }
 
-/// Sums of products of what was seen together, and how often it was.
-struct Pooled {
-  MatrixXd products, counts;
-
-  explicit Pooled(Index size) : products(MatrixXd::Zero(size, size)), counts(products) {}
-  void add(const VectorXd& z) {
-    const VectorXd seen = z.array().isNaN().select(VectorXd::Zero(z.size()), 1.0);
-    const VectorXd clean = z.array().isNaN().select(VectorXd::Zero(z.size()), z);
-    products += clean * clean.transpose();
-    counts += seen * seen.transpose();
-  }
-  /// Pairs that were never seen together are taken as independent.
-  MatrixXd covariance() const {
-    MatrixXd c = products.cwiseQuotient(counts.cwiseMax(1.0));
-    for (Index i = 0; i < c.rows(); ++i)
-      for (Index j = 0; j < c.cols(); ++j)
-        if (i != j) c(i, j) *= 1.0 - kShrink;
-    return c;
-  }
-};
+/// The mean products with those of pairs reduced; pairs that were never seen together are taken as independent.
+MatrixXd reduced_covariance(const PooledProducts& pooled, double shrink) {
+  MatrixXd c = pooled.means();
+  for (Index i = 0; i < c.rows(); ++i)
+    for (Index j = 0; j < c.cols(); ++j)
+      if (i != j) c(i, j) *= 1.0 - shrink;
+  return c;
+}
 
 }  // namespace
 
 EnergyComponent::EnergyComponent(const ResidualSpace& space, const std::vector<BlockRuns>& runs) : space_(space) {
   for (std::size_t o = 0; o < space.observables().size(); ++o)
     if (carries_energy(space.observables()[o])) observables_.push_back(o);
-  Pooled pooled(std::ssize(observables_));
+  PooledProducts pooled(std::ssize(observables_));
   for (std::size_t b = 0; b < runs.size(); ++b)
     for (std::size_t t = 0; t < runs[b].trials; ++t) pooled.add(carriers(b, space.of_own_trial(b, runs[b], t)));
-  covariance_ = pooled.covariance();
+  covariance_ = reduced_covariance(pooled, space.rules().shrink);
 }
 
 VectorXd EnergyComponent::carriers(std::size_t block, const Residual& residual) const {

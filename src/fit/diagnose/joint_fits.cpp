@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "talus/fit/diagnose/candidates.hpp"
+
 namespace talus {
 namespace {
 
@@ -66,7 +68,7 @@ JointFits::JointFits(std::span<const Site> sites, const DiagnoseOptions& options
 
 std::size_t JointFits::blocks() const {
   std::size_t count = 0;
-  for (const std::vector<bool>& rows : rows_) count += static_cast<std::size_t>(std::ranges::count(rows, true));
+  for (const std::vector<bool>& rows : rows_) count += count_of_rows(rows);
   return count;
 }
 
@@ -174,9 +176,7 @@ Evaluation JointFits::best_start(const JointModel& base, const SiteCandidates& c
       VectorXd effect = VectorXd::Zero(own);
       for (Index i = 0; i < std::min(own, estimate.size()); ++i) {
         const Parameter& p = parameters.free[static_cast<std::size_t>(ground + i)];
-        const double z =
-            options_.rules.noticed * amount * std::clamp(estimate[i], p.lower >= p.centre ? 0.3 : -2.0, 4.0);
-        effect[i] = p.within(z);
+        effect[i] = p.within(options_.rules.noticed * amount * first_amount(p, estimate[i]));
       }
       Evaluation here = evaluate(problem, how, extended(base.z, effect), {how.trials});
       if (here.objective < best.objective) best = std::move(here);

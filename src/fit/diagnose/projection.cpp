@@ -111,7 +111,7 @@ std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Index 
         place.members.push_back(first + i);
         for (Index p = 0; p < place.pick.cols(); ++p) place.pick(direction[i] + p, p) = 1.0;
       }
-      for (std::size_t p = 0; p < one.tested; ++p) place.one_sided.push_back(one.parameters[p].lower >= 0.0);
+      for (std::size_t p = 0; p < one.tested; ++p) place.one_sided.push_back(one.parameters[p].one_sided());
       places.push_back(std::move(place));
     }
     first = end;

@@ -5,9 +5,10 @@
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
+
+#include "talus/base/bounds.hpp"
 
 namespace talus {
 namespace {
@@ -18,7 +19,6 @@ using Eigen::VectorXd;
 
 constexpr double kVaries = 1e-9;  // norm of a column, relative to the column with its means, below which it is constant
 constexpr double kFollows = 1e-7;  // share of a column below which it follows from the others
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Columns that vary within strata, of length 1; the others are zero.
 MatrixXd normed_within(const MatrixXd& x, std::span<const std::size_t> strata) {
@@ -81,7 +81,7 @@ RegressionTest regression_test(const VectorXd& y, const MatrixXd& x, const Units
   const Arrangements ways(units, arrangements, seed);
   test.permuted = ways.test(explained);
   test.explained = std::min(1.0, explained(ways.givers(0)));
-  test.f = test.p_of_f = kNone;
+  test.f = test.p_of_f = kNotGiven;
   if (saturated) return test;
   const auto properties = static_cast<double>(test.properties), freedom = static_cast<double>(test.freedom);
   test.f = test.explained / properties / ((1.0 - test.explained) / freedom);
@@ -103,11 +103,11 @@ std::vector<PartialCorrelation> slopes(const VectorXd& y, const MatrixXd& x, std
     const VectorXd own = columns.col(j) - known * (known.transpose() * columns.col(j));
     const VectorXd left = rest - known * (known.transpose() * rest);
     if (own.norm() < kFollows || !(left.norm() > 0.0)) {
-      list.push_back({kNone, kNone});
+      list.push_back({kNotGiven, kNotGiven});
       continue;
     }
     const double r = std::clamp(own.dot(left) / (own.norm() * left.norm()), -1.0, 1.0);
-    PartialCorrelation slope{r, kNone};
+    PartialCorrelation slope{r, kNotGiven};
     if (freedom >= 1) {
       const auto f = static_cast<double>(freedom);
       const double t = std::abs(r) * std::sqrt(f / std::max(1e-300, 1.0 - r * r));

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "pooled_products.hpp"
 #include "talus/fit/campaign/block_draws.hpp"
 #include "talus/fit/score/coverage.hpp"
 
@@ -75,8 +76,7 @@ std::vector<double> sorted_finite(std::vector<double> values) {
 /// Direction in plan of the mean stop, seen from the release; where none stopped, east.
 Eigen::Vector2d forward_of(const MeasuredBlock& block, const BlockRuns& runs) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (std::size_t t = 0; t < runs.trials; ++t)
-    if (!std::isnan(runs.x[t])) sum += Eigen::Vector2d(runs.x[t] - block.x, runs.y[t] - block.y);
+  for (const Eigen::Vector2d& stop : stops_of(runs)) sum += stop - Eigen::Vector2d(block.x, block.y);
   return sum.norm() > 0.0 ? Eigen::Vector2d(sum.normalized()) : Eigen::Vector2d::UnitX();
 }
 
@@ -276,17 +276,11 @@ ResidualSpace::Moments ResidualSpace::moments(std::size_t block, std::size_t obs
 }
 
 void ResidualSpace::correlate(const std::vector<BlockRuns>& runs) {
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size(), size()), count = sum;
+  PooledProducts products(size());
   for (std::size_t b = 0; b < runs.size(); ++b)
-    for (std::size_t t = 0; t < runs[b].trials; ++t) {
-      const Residual r = of_own_trial(b, runs[b], t);
-      const Eigen::VectorXd seen = r.array().isNaN().select(Eigen::VectorXd::Zero(size()), 1.0);
-      const Eigen::VectorXd clean = r.array().isNaN().select(Eigen::VectorXd::Zero(size()), r);
-      sum += clean * clean.transpose();
-      count += seen * seen.transpose();
-    }
+    for (std::size_t t = 0; t < runs[b].trials; ++t) products.add(of_own_trial(b, runs[b], t));
+  const Eigen::MatrixXd pooled = products.means();
   correlation_ = Eigen::MatrixXd::Identity(size(), size());
-  const auto pooled = [&](Eigen::Index i, Eigen::Index j) { return count(i, j) > 0.0 ? sum(i, j) / count(i, j) : 0.0; };
   for (Eigen::Index i = 0; i < size(); ++i)
     for (Eigen::Index j = 0; j < size(); ++j)
       if (i != j && pooled(i, i) > 0.0 && pooled(j, j) > 0.0)

@@ -234,8 +234,7 @@ std::vector<ResidualRow> residual_table(const Campaign& campaign, const Residual
     }
   }
   add_leaving(table, campaign, runs, rows);
-  std::sort(table.begin(), table.end(),
-            [](const ResidualRow& a, const ResidualRow& b) { return a.p_value < b.p_value; });
+  std::ranges::stable_sort(table, {}, &ResidualRow::p_value);
   correct_rows(table);
   return table;
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "null_scores.hpp"
+#include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/corrected.hpp"
 #include "talus/fit/diagnose/projection.hpp"
 #include "talus/fit/diagnose/residual.hpp"
@@ -195,7 +196,7 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
     effect_of.push_back(static_cast<std::size_t>(effect - test.effects.begin()));
   }
   correct(test, smallest_drawn(test.effects.size(), projections, effect_of, null.scores, options));
-  std::sort(test.effects.begin(), test.effects.end(), [](const EffectVerdict& a, const EffectVerdict& b) {
+  std::ranges::stable_sort(test.effects, [](const EffectVerdict& a, const EffectVerdict& b) {
     return a.p_value != b.p_value ? a.p_value < b.p_value : more_significant(a.best, b.best);
   });
   return test;

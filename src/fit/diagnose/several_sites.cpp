@@ -5,6 +5,7 @@
 #include "choice.hpp"
 #include "joint_fits.hpp"
 #include "outer_folds.hpp"
+#include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/detection_limits.hpp"
 #include "talus/fit/diagnose/diagnose.hpp"
 #include "talus/fit/diagnose/families.hpp"
@@ -15,8 +16,7 @@ namespace {
 using Eigen::VectorXd;
 
 std::size_t fitting_blocks(const Campaign& campaign) {
-  const std::vector<bool> rows = fitting_rows(campaign);
-  return static_cast<std::size_t>(std::ranges::count(rows, true));
+  return count_of_rows(fitting_rows(campaign));
 }
 
 /// Options with the trials of so many blocks.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "fit/calibrate/amount.hpp"
+#include "talus/base/bounds.hpp"
 #include "talus/base/elementary.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
@@ -49,7 +50,7 @@ Candidate band(const Campaign& campaign, const Axis& axis, double from, double t
     return [member](const Model& m) {
       const std::size_t n = m.grounds.size() / 2;
       const double there = m.grounds[n].*member, beside = m.grounds[0].*member;
-      return there > 0.0 && beside > 0.0 ? natural_log(there / beside) : std::numeric_limits<double>::quiet_NaN();
+      return there > 0.0 && beside > 0.0 ? natural_log(there / beside) : kNotGiven;
     };
   };
   return {"undeclared-zone",

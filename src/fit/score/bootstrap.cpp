@@ -12,6 +12,7 @@ namespace talus {
 namespace {
 
 constexpr std::size_t kFewestDrawn = 6;  // groups of blocks whose choice a bootstrap can vary
+constexpr std::uint64_t kDifferenceSeed = 1;
 
 /// The weighted mean of each group; NaN for one of no weight.
 std::vector<double> weighted_groups(const Score& score, std::span<const double> weight) {
@@ -25,11 +26,9 @@ std::vector<double> weighted_groups(const Score& score, std::span<const double> 
   return sum;
 }
 
-Interval middle(std::vector<double> values) {
+Interval middle_of_known(std::vector<double> values) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
-  if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  return {quantile(values, kTail), quantile(values, 1.0 - kTail)};
+  return middle_of(std::move(values));
 }
 
 }  // namespace
@@ -59,13 +58,13 @@ std::vector<double> bootstrap_weights(std::span<const std::uint32_t> streams, st
 }
 
 Difference difference(const Score& before, const Score& after, std::span<const std::uint32_t> streams,
-                      std::uint32_t draws, std::uint64_t seed) {
+                      std::uint32_t draws) {
   Difference d{after.total - before.total, {}, {}};
   for (std::uint32_t draw = 0; draw < draws; ++draw) {
-    const std::vector<double> weight = bootstrap_weights(streams, draw, seed);
+    const std::vector<double> weight = bootstrap_weights(streams, draw, kDifferenceSeed);
     d.draws.push_back(weighted_total(after, weight) - weighted_total(before, weight));
   }
-  d.interval = middle(d.draws);
+  d.interval = middle_of_known(d.draws);
   return d;
 }
 
@@ -80,7 +79,7 @@ Difference mean_difference(std::span<const Score> before, std::span<const Score>
     mean.mean += share * one.mean;
     for (std::size_t draw = 0; draw < one.draws.size(); ++draw) mean.draws[draw] += share * one.draws[draw];
   }
-  mean.interval = middle(mean.draws);
+  mean.interval = middle_of_known(mean.draws);
   return mean;
 }
 

@@ -14,6 +14,8 @@
 namespace talus {
 namespace {
 
+constexpr std::uint64_t kRankSeed = 1;  // of the places between equal values
+
 namespace policies = boost::math::policies;
 /// Its quantile p is the smallest count k for which counts of at most k have a probability of p or more.
 using Binomial =
@@ -23,7 +25,7 @@ using Binomial =
 /// Ranks of one observable.
 class Ranks {
  public:
-  Ranks(std::string observable, std::uint64_t seed) : seed_(seed), number_(stream_of_name(observable)) {
+  explicit Ranks(std::string observable) : number_(stream_of_name(observable)) {
     coverage_.observable = std::move(observable);
   }
 
@@ -38,7 +40,7 @@ class Ranks {
       return;
     }
     const double rank =
-        random_rank(values_, measured, draw_of_block(seed_, block.stream, number_, BlockDraw::RankOfTie));
+        random_rank(values_, measured, draw_of_block(kRankSeed, block.stream, number_, BlockDraw::RankOfTie));
     ++coverage_.rows;
     ++coverage_.ranks[std::min(kRankClasses - 1, static_cast<std::size_t>(rank * kRankClasses))];
     for (std::size_t i = 0; i < kCoverageShares.size(); ++i)
@@ -48,7 +50,7 @@ class Ranks {
   void add_to(std::vector<Coverage>& list) {
     if (coverage_.rows < kFewestRows) return;
     for (std::size_t i = 0; i < kCoverageShares.size(); ++i) test(coverage_.below[i], kCoverageShares[i]);
-    coverage_.expected_in_class = middle_of(Binomial(coverage_.rows, 1.0 / kRankClasses));
+    coverage_.expected_in_class = middle_of_counts(Binomial(coverage_.rows, 1.0 / kRankClasses));
     list.push_back(std::move(coverage_));
   }
 
@@ -59,23 +61,22 @@ class Ranks {
     const double at_least =
         below.count == 0 ? 1.0 : boost::math::cdf(boost::math::complement(right, below.count - 1.0));
     below.p_value = std::min(1.0, 2.0 * std::min(at_most, at_least));
-    below.expected = middle_of(right);
+    below.expected = middle_of_counts(right);
   }
 
-  static Interval middle_of(const Binomial& counts) {
+  static Interval middle_of_counts(const Binomial& counts) {
     return {boost::math::quantile(counts, kTail), boost::math::quantile(counts, 1.0 - kTail)};
   }
 
   Coverage coverage_;
-  std::uint64_t seed_;
   std::uint32_t number_;
   std::vector<double> values_;
 };
 
 void add_screen(std::vector<Coverage>& list, const Campaign& campaign, std::span<const BlockRuns> runs,
-                const std::vector<bool>& ask, std::size_t screen, std::uint64_t seed) {
+                const std::vector<bool>& ask, std::size_t screen) {
   const auto add = [&](const char* name, double Passage::*measured, std::vector<double> BlockRuns::AtScreen::*values) {
-    Ranks ranks(name + campaign.screens[screen].id, seed);
+    Ranks ranks(name + campaign.screens[screen].id);
     for (std::size_t b = 0; b < campaign.blocks.size(); ++b) {
       const auto& passage = campaign.blocks[b].passages[screen];
       if (ask[b] && passage) ranks.add(campaign.blocks[b], (*passage).*measured, runs[b].screens[screen].*values);
@@ -108,10 +109,10 @@ double random_rank(std::span<const double> simulated, double measured, double dr
   return (below + draw * (equal + 1.0)) / (static_cast<double>(simulated.size()) + 1.0);
 }
 
-std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
-                               std::uint64_t seed) {
+std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRuns> runs,
+                               const std::vector<bool>& ask) {
   std::vector<Coverage> list;
-  Ranks runout("runout", seed);
+  Ranks runout("runout");
   const bool left_are_farther = all_at_rest(campaign, ask);
   for (std::size_t b = 0; b < campaign.blocks.size(); ++b)
     if (ask[b])
@@ -119,7 +120,7 @@ std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRu
                  runouts_of(campaign, campaign.blocks[b], runs[b]),
                  left_are_farther ? runs[b].ends[static_cast<std::size_t>(End::Left)] : 0);
   runout.add_to(list);
-  for (std::size_t s = 0; s < campaign.screens.size(); ++s) add_screen(list, campaign, runs, ask, s, seed);
+  for (std::size_t s = 0; s < campaign.screens.size(); ++s) add_screen(list, campaign, runs, ask, s);
   correct(list);
   return list;
 }

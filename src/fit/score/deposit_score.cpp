@@ -8,6 +8,7 @@
 #include "talus/base/expect.hpp"
 #include "talus/fit/campaign/block_draws.hpp"
 #include "talus/fit/campaign/deposits.hpp"
+#include "talus/fit/score/fair_scores.hpp"
 #include "talus/fit/score/holm.hpp"
 
 namespace talus {
@@ -20,13 +21,6 @@ constexpr std::uint64_t kPatternSeed = 1;
 constexpr std::size_t kStopsCompared = 100;  // of each block: more cost time and tell little
 
 using Places = std::vector<Eigen::Vector2d>;
-
-Places stops_of(const BlockRuns& runs) {
-  Places places;
-  for (std::uint32_t t = 0; t < runs.trials; ++t)
-    if (!std::isnan(runs.x[t])) places.emplace_back(runs.x[t], runs.y[t]);
-  return places;
-}
 
 std::size_t class_of(const Campaign& campaign, const MeasuredBlock& block) {
   return class_of(*campaign.deposits, equivalent_diameter(block.mass, block.density));

@@ -9,6 +9,7 @@
 #include "score_rows.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/fit/score/deposit_score.hpp"
+#include "talus/fit/score/fair_scores.hpp"
 
 namespace talus {
 namespace {
@@ -70,16 +71,15 @@ class Scorer {
     std::vector<Eigen::Vector2d> places, broad;
     for_asked([&](std::uint32_t b, const MeasuredBlock& block) {
       if (!block.stop) return;
-      places.clear();
       fitting.of_others(b, broad, options_.folds);
       if (climatology_ && options_.ways_from_release) {
         ways.of_others(b, places, options_.folds);
         for (Eigen::Vector2d& place : places) place += Eigen::Vector2d(block.x, block.y);
       } else if (climatology_) {
         places = broad;
+      } else {
+        places = stops_of(runs_[b]);
       }
-      for (std::uint32_t t = 0; !climatology_ && t < runs_[b].trials; ++t)
-        if (!std::isnan(runs_[b].x[t])) places.emplace_back(runs_[b].x[t], runs_[b].y[t]);
       const bool unseen = too_few(places.size());
       if (unseen) places = own_values_too() ? fitting.values : broad;
       const double score = options_.rule == ScoreRule::Fair ? fair_energy_score(places, *block.stop) / spread

@@ -6,6 +6,7 @@
 #include "fitting_values.hpp"
 #include "talus/base/sample.hpp"
 #include "talus/fit/campaign/deposits.hpp"
+#include "talus/fit/score/fair_scores.hpp"
 
 namespace talus {
 namespace {
@@ -22,12 +23,6 @@ void runouts_anywhere(const Campaign& campaign, const MeasuredBlock& block, std:
   out.clear();
   for (const Eigen::Vector2d& place : campaign.deposits->anywhere[region_at(*campaign.deposits, *block.stop)])
     if (const double distance = run_out(campaign, place).distance; !std::isnan(distance)) out.push_back(distance);
-}
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return kNotGiven;
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
 }
 
 }  // namespace

@@ -252,8 +252,7 @@ void warn_of_median(const std::string& path, std::span<const MeasuredBlock> bloc
   constexpr double kSmall = 0.15, kLarge = 10.0;  // diameter of a sphere of the same volume [m]
   std::vector<double> diameters;
   for (const MeasuredBlock& b : blocks) diameters.push_back(equivalent_diameter(b.mass, b.density));
-  std::ranges::sort(diameters);
-  const double median = quantile(diameters, 0.5);
+  const double median = median_of(std::move(diameters));
   if (median >= kSmall && median <= kLarge) return;
   warnings.push_back(path + ": half of the blocks are " + (median < kSmall ? "smaller" : "larger") + " than " +
                      with_digits(median, 2) + " m across: are masses in kg, lengths in m and densities in kg/m3?");

@@ -84,8 +84,7 @@ class DepositTable {
     if (!mass && !diameter)
       table_.refuse(row, table_.has("mass_kg") ? "mass_kg" : "diameter_m",
                     "must be given, as mass_kg or diameter_m: the size of a mapped block decides how far it goes; "
-                    "estimate it, or "
-                    "leave the row out");
+                    "estimate it, or leave the row out");
     if (mass && diameter)
       table_.refuse(row, "diameter_m", "stands beside a mass_kg, must be one of them: leave the other empty");
     return mass ? *mass : density * kPi / 6.0 * *diameter * *diameter * *diameter;

@@ -1,6 +1,5 @@
 #include "talus/io/files/made_folders.hpp"
 
-#include <algorithm>
 #include <system_error>
 
 #include "talus/base/error.hpp"

@@ -1,10 +1,10 @@
 #include "talus/io/gdal/crossings_file.hpp"
 
 #include <filesystem>
-#include <limits>
 #include <unordered_map>
 
 #include "csv_table.hpp"
+#include "talus/base/bounds.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
@@ -70,12 +70,11 @@ CrossingTable read_crossings(const std::string& path, const std::string& screen)
     if (!block.empty()) {
       const auto [first, fresh] = seen.try_emplace(block + ',' + piece_of(table, row), out.count);
       if (!fresh) {
-        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
         out.again.push_back({first->second,
-                             speed.value_or(kNone),
-                             height.value_or(kNone),
-                             mass.value_or(kNone),
-                             {x.value_or(kNone), y.value_or(kNone)}});
+                             speed.value_or(kNotGiven),
+                             height.value_or(kNotGiven),
+                             mass.value_or(kNotGiven),
+                             {x.value_or(kNotGiven), y.value_or(kNotGiven)}});
         continue;
       }
     }

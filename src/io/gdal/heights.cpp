@@ -10,6 +10,7 @@
 
 #include "dataset.hpp"
 #include "pixels.hpp"
+#include "talus/base/bounds.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
@@ -52,7 +53,7 @@ class HeightReader {
   /// @param i  counted row by row from the north-west
   double height(std::size_t i) const {
     const bool there = !(masked_ && mask_[i] == 0) && std::isfinite(values_[i]);
-    return there ? values_[i] * scale_ + offset_ : std::numeric_limits<double>::quiet_NaN();
+    return there ? values_[i] * scale_ + offset_ : kNotGiven;
   }
 
   /// The value of a height as stored in the file.

@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "pixels.hpp"
+#include "talus/base/bounds.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
-namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
-
 MapRaster::MapRaster(const std::string& path, int band)
     : path_(path),
       dataset_(open_dataset(path, GDAL_OF_RASTER)),
@@ -63,7 +57,7 @@ void MapRaster::for_each_value(const MapWindow& window, Visit visit) const {
 }
 
 std::vector<double> MapRaster::pixels(const MapWindow& window, PixelValue kind) const {
-  std::vector<double> pixels(std::size_t(window.width()) * window.height(), kNone);
+  std::vector<double> pixels(std::size_t(window.width()) * window.height(), kNotGiven);
   std::vector<std::uint32_t> counts(kind == PixelValue::Mean ? pixels.size() : 0);
   for_each_value(window, [&](int column, int row, double value) {
     const std::size_t at =

@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
+#include "talus/base/bounds.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
@@ -47,12 +47,11 @@ PixelReader::PixelReader(GDALDataset& dataset, std::string path)
     : band_(*dataset.GetRasterBand(1)), path_(std::move(path)), masked_((band_.GetMaskFlags() & GMF_ALL_VALID) == 0) {}
 
 double PixelReader::at(double column, double row) {
-  if (!(column >= 0.0 && row >= 0.0 && column < band_.GetXSize() && row < band_.GetYSize()))
-    return std::numeric_limits<double>::quiet_NaN();
+  if (!(column >= 0.0 && row >= 0.0 && column < band_.GetXSize() && row < band_.GetYSize())) return kNotGiven;
   const int x = static_cast<int>(column), y = static_cast<int>(row);
   const std::pair<int, int> key{y / kSide, x / kSide};
   if (tile_ == nullptr || key != key_) {
-    if (tiles_.size() > kTiles && !tiles_.contains(key)) tiles_.clear();
+    if (tiles_.size() >= kTiles && !tiles_.contains(key)) tiles_.clear();
     const auto [found, fresh] = tiles_.try_emplace(key);
     if (fresh) read(key.second * kSide, key.first * kSide, found->second);
     key_ = key;
@@ -72,7 +71,7 @@ void PixelReader::read(int x, int y, std::vector<double>& values) {
     throw InputError(path_ + ": cannot be read: " + messages_.take());
   if (!masked_) return;
   for (std::size_t k = 0; k < values.size(); ++k)
-    if (mask_[k] == 0) values[k] = std::numeric_limits<double>::quiet_NaN();
+    if (mask_[k] == 0) values[k] = kNotGiven;
 }
 
 }  // namespace talus::io

@@ -1,10 +1,8 @@
 #include "talus/io/gdal/vectors.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 
 #include "layer.hpp"
 #include "narrow_polygons.hpp"

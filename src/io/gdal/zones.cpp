@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "idle_features.hpp"
 #include "layer.hpp"
 #include "off_map.hpp"
 #include "pixels.hpp"
+#include "talus/base/bounds.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
@@ -164,7 +164,7 @@ void read_codes(GDALDataset& dataset, const ZoneRequest& request, const Terrain&
   PixelReader reader(dataset, request.path);
   ZoneIndex index(request, true);
   const Grid& grid = terrain.heights.grid;
-  double last = std::numeric_limits<double>::quiet_NaN();
+  double last = kNotGiven;
   std::uint8_t zone = 0;
   std::uint64_t cells = 0, given = 0;
   in_squares(terrain.heights, [&](int column, int row) {

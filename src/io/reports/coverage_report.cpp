@@ -126,9 +126,8 @@ std::string coverage_markdown(const std::vector<Coverage>& list) {
 
 Markup coverage_html(const std::vector<Coverage>& list) {
   Markup text =
-      "<table><tr><th>observable</th><th>rows</th><th>below the simulated P5 (expected)</th><th>below "
-      "P50</th><th>below "
-      "P95</th></tr>\n"_html;
+      "<table><tr><th>observable</th><th>rows</th><th>below the simulated P5 (expected)</th>"
+      "<th>below P50</th><th>below P95</th></tr>\n"_html;
   for_rows(list, [&text](const std::vector<std::string>& cells) {
     text += "<tr>";
     for (const std::string& cell : cells) text += "<td>"_html + cell + "</td>";

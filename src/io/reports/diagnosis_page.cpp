@@ -149,11 +149,9 @@ Markup spread_html(const DiagnosisRecord& record) {
   Markup html =
       "<h2>Calibration of the spread</h2>\n<p>Measured values below percentiles of the values simulated for the same "
       "block: 5, 50 and 95 % in a right model (in brackets what 95 % of right models give; *: hardly a right model). "
-      "Below, "
-      "the "
-      "blocks by the rank of their measurement among the simulated values, in tenths: high at both ends where the "
-      "model "
-      "scatters too little, in the middle where it scatters too much. Grey: 95 % of the bars of a right model.</p>\n"_html;
+      "Below, the blocks by the rank of their measurement among the simulated values, in tenths: high at both ends "
+      "where the model scatters too little, in the middle where it scatters too much. "
+      "Grey: 95 % of the bars of a right model.</p>\n"_html;
   for (const BeforeAfter& e : record.errors)
     for (const ScoredRows* scored : {&e.before, &e.after}) {
       const bool after = scored == &e.after;
@@ -329,9 +327,8 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
   html += errors_html(record) + repeated_html(record) + ground_html(d) + spread_html(record);
   html +=
       "<h2>Families</h2>\n<p>Effects that leave the same kind of trace are tested together, by one test of few degrees "
-      "of freedom. Only an effect of a significant family may be named. How often p is 5 % or less in campaigns "
-      "without "
-      "an effect: docs/diagnosis-results.md.</p>\n";
+      "of freedom. Only an effect of a significant family may be named. "
+      "How often p is 5 % or less in campaigns without an effect: docs/diagnosis-results.md.</p>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
     html += "<h3>Round "_html + std::to_string(i + 1) + "</h3>\n" + families_table(d.rounds[i]) +
             settling_text(d.rounds[i].settling);
@@ -345,9 +342,8 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
               "</h3>\n" + candidates_table(d.rounds[i], record.candidates[i]);
   html +=
       "<h2>What could not have been seen</h2>\n<p>The amount from which on these data begin to show each effect, "
-      "after the ground has been fitted anew: 4.5 standard errors of a linear test. Effects that do not grow linearly "
-      "are "
-      "seen from larger amounts on (on one synthetic campaign the printed amounts had 1.8 to 4.9).</p>\n"_html +
+      "after the ground has been fitted anew: 4.5 standard errors of a linear test. "
+      "Effects that do not grow linearly are seen from larger amounts on (on one synthetic campaign the printed amounts had 1.8 to 4.9).</p>\n"_html +
       limits_html(d.rounds.back().limits);
   html +=
       "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "

@@ -10,6 +10,7 @@
 #include "repeated_report.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
+#include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/families.hpp"
 
 namespace talus::io {
@@ -150,7 +151,7 @@ void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
   record.errors.push_back(compared(campaign, scored("fit", campaign, d.base.runs, fitting),
                                    scored("fit", campaign, d.with_effects.runs, fitting)));
   record.errors.back().before.fitted = record.errors.back().after.fitted = kNotGiven;
-  const bool held_out = std::ranges::count(rows, true) > 0;
+  const bool held_out = count_of_rows(rows) > 0;
   if (held_out || !d.nested) record.errors.push_back(compared(campaign, std::move(base), std::move(last)));
   if (d.nested) judge_nested(campaign, record);
   const BeforeAfter& unseen = record.errors[record.unseen];

@@ -204,9 +204,8 @@ std::string interval_note(bool identifiable, bool at_bound) {
 
 std::string bound_warning(const std::string& key, const Interval& interval) {
   return key + ": its 95 % interval, " + with_digits(interval.low, 3) + " to " + with_digits(interval.high, 3) +
-         ", ends at the bound of the search, not where the data end it: start elsewhere (--parameters) and keep the "
-         "fit "
-         "of the least error";
+         ", ends at the bound of the search, not where the data end it: "
+         "start elsewhere (--parameters) and keep the fit of the least error";
 }
 
 std::string calibration_report(const Calibration& c) {

@@ -288,12 +288,10 @@ Markup repeated_html(const DiagnosisRecord& record) {
     if (const std::string note = quick_folds_note(record); !note.empty()) html += "<p>"_html + note + ".</p>\n";
   }
   html +=
-      "<h2>Evidence</h2>\n<p>Each effect at its best place against the ground alone, on rows that its numbers have "
-      "not "
-      "seen; out of fold, the ground that was held with an effect has seen them, in both models. Positive is "
-      "better.</p>\n<table><tr><th>effect</th><th>rows</th><th>error lower by, 95 %</th><th>log "
-      "score "
-      "better by [nats per block], 95 %</th><th>rows by group</th></tr>\n";
+      "<h2>Evidence</h2>\n<p>Each effect at its best place against the ground alone, on rows that its numbers "
+      "have not seen; out of fold, the ground that was held with an effect has seen them, in both models. "
+      "Positive is better.</p>\n<table><tr><th>effect</th><th>rows</th><th>error lower by, 95 %</th>"
+      "<th>log score better by [nats per block], 95 %</th><th>rows by group</th></tr>\n";
   for (std::size_t i = 0; i < record.evidence.size(); ++i)
     for (const CandidateEvidence& e : record.evidence[i]) {
       const Reduction less = reduction(e.ground, e.score, record.clusters);

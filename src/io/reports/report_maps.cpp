@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "io/files/checksum.hpp"
 #include "packed_map.hpp"
+#include "talus/base/bounds.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
 
@@ -162,7 +162,7 @@ void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet)
   std::vector<double> values = undecided.pixels(sheet.window, PixelValue::Largest);
   double open = 0.0, all = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!(of_class[i] > 0.0 || values[i] > 0.0)) values[i] = std::numeric_limits<double>::quiet_NaN();
+    if (!(of_class[i] > 0.0 || values[i] > 0.0)) values[i] = kNotGiven;
     if (!std::isnan(values[i])) open += values[i], all += 1.0;
   }
   if (all > 0.0) sheet.undecided = open / all;

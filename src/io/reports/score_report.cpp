@@ -140,8 +140,7 @@ class Uncounted {
     for (std::size_t b = 0; b < campaign_.blocks.size(); ++b)
       if (ask_[b] && measured(campaign_.blocks[b])) ++blocks;
     if (blocks > 0 && std::ranges::count(score_.groups, group, &GroupScore::name) == 0)
-      names.push_back(group + " (" + std::to_string(blocks) + " of " + std::to_string(std::ranges::count(ask_, true)) +
-                      ")");
+      names.push_back(group + " (" + std::to_string(blocks) + " of " + std::to_string(count_of_rows(ask_)) + ")");
   }
 
   std::vector<std::string> names;  // with the number of blocks: "speed lower (3 of 20)"

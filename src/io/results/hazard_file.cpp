@@ -9,7 +9,6 @@
 #include "hazard_stream.hpp"
 #include "io/files/json.hpp"
 #include "io/files/own_files.hpp"
-#include "io/gdal/dataset.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
@@ -60,9 +59,10 @@ bool is_possible(const HazardHeader& header) {
          std::isfinite(header.geo.west) && std::isfinite(header.geo.north) && thresholds.size() <= kMostThresholds &&
          std::ranges::is_sorted(thresholds) &&
          std::ranges::all_of(thresholds, [&](double kj) { return within("output.energy_thresholds", kj); }) &&
-         scale.unit > 0.0 && scale.square_unit > 0.0 && scale.total >= 0.0 && std::isfinite(scale.total) &&
-         scale.room >= 1.0 && std::isfinite(scale.room) && header.left_weight >= 0 &&
-         within("output.passages_below", header.passages_below);
+         scale.unit > 0.0 && scale.square_unit > 0.0 && scale.total > 0.0 && std::isfinite(scale.total) &&
+         scale.largest > 0 && scale.trajectories > 0 && scale.largest_diameter >= 0.0 &&
+         std::isfinite(scale.largest_diameter) && scale.room >= 1.0 && std::isfinite(scale.room) &&
+         header.left_weight >= 0 && within("output.passages_below", header.passages_below);
 }
 
 HazardHeader header_of(const std::string& text) {

@@ -444,10 +444,8 @@ class ObjectsTable {
 /// Point i of a curve, with the bounds of objects.csv where that has it: at all hits, and at a threshold.
 Bounded curve_point(const HazardCurve& curve, const EnergyBins& bins, std::size_t i) {
   if (i == 0) return curve.passage();
-  const auto& thresholds = bins.thresholds();
-  const auto threshold = std::ranges::find(thresholds, bins.edge(curve.first() + static_cast<int>(i)));
-  return threshold == thresholds.end() ? curve.at(i)
-                                       : curve.exceedance(static_cast<std::size_t>(threshold - thresholds.begin()));
+  const auto threshold = bins.threshold_at(bins.edge(curve.first() + static_cast<int>(i)));
+  return threshold ? curve.exceedance(*threshold) : curve.at(i);
 }
 
 std::string curve_rows(const std::string& object, const HazardCurve& curve, const EnergyBins& bins) {

@@ -190,8 +190,8 @@ std::optional<std::string> left_note(const RunSummary& run, const std::optional<
          (run.of_profile ? "profile"
           : gaps         ? "DEM or entered a gap in it"
                          : "DEM") +
-         " without crossing this line first: those that would have crossed it later are missing here (unsafe); take "
-         "a " +
+         " without crossing this line first: those that would have crossed it later are missing here (unsafe); "
+         "take a " +
          (run.of_profile ? "longer profile"
           : gaps         ? "larger DEM, or fill the gaps"
                          : "larger DEM");

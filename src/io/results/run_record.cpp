@@ -10,6 +10,7 @@
 #include "talus/io/gdal/input_access.hpp"
 #include "talus/io/gdal/lines.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
+#include "talus/simulate/scenario/block_sizes.hpp"
 #include "talus/simulate/tally/histogram.hpp"
 #include "talus/terrain/no_height.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
 
+#include "talus/base/bounds.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
@@ -44,7 +44,7 @@ std::optional<std::string> fault_of_code(const std::string& text) {
   double code = 0.0;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, code);
-  if (error != std::errc() || rest != end) code = std::numeric_limits<double>::quiet_NaN();
+  if (error != std::errc() || rest != end) code = kNotGiven;
   if (const auto fault = fault_of(kCode, code)) return fault;
   code += 0.0;  // not -0
   if (text_of(code) != text) return "must be written as the number that the raster holds, " + text_of(code);

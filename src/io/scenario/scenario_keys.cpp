@@ -1,7 +1,6 @@
 #include "scenario_keys.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 

@@ -52,9 +52,10 @@ Release make_release(const Scenario& scenario, std::uint32_t source, std::uint32
 }
 
 bool is_recorded(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {
-  // Release g is recorded if floor(g K / N) steps up after it: K of N releases, evenly spread.
-  const std::uint64_t wanted = scenario.output.paths, all = scenario.released();
-  const std::uint64_t g = std::uint64_t{source} * scenario.trajectories + block;
+  // Release g is recorded if floor(g K / N) steps up after it: K of N releases, evenly spread. g K can exceed 64 bits.
+  __extension__ typedef unsigned __int128 Wide;
+  const Wide wanted = scenario.output.paths, all = scenario.released();
+  const Wide g = std::uint64_t{source} * scenario.trajectories + block;
   TALUS_EXPECT(g < all, "a release is one of the plan");
   return (g + 1) * wanted / all > g * wanted / all;
 }

@@ -2,9 +2,14 @@
 
 namespace talus {
 
-std::size_t class_at(const std::vector<BlockClass>& classes, double share) {
+double total_weight(std::span<const BlockClass> classes) {
   double total = 0.0;
   for (const BlockClass& c : classes) total += c.weight;
+  return total;
+}
+
+std::size_t class_at(const std::vector<BlockClass>& classes, double share) {
+  const double total = total_weight(classes);
   double below = 0.0;
   for (std::size_t i = 0; i + 1 < classes.size(); ++i) {
     below += classes[i].weight;

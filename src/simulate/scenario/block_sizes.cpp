@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "talus/base/text.hpp"
+#include "talus/simulate/scenario/block_class.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
 
 namespace talus {
@@ -108,9 +110,8 @@ std::string guess_warning(std::span<const Preset* const> presets) {
       names.emplace_back(preset->name);
   if (names.empty()) return {};
   return std::string(kGuessWarning) + "ground " + joined(names) +
-         " is for migration and fitted to no data; run-out may be too short (rough types: unsafe) or too long (smooth "
-         "ones): "
-         "see docs/migration.md";
+         " is for migration and fitted to no data; "
+         "run-out may be too short (rough types: unsafe) or too long (smooth ones): see docs/migration.md";
 }
 
 std::string rare_class_warning(const Scenario& scenario) {
@@ -119,9 +120,8 @@ std::string rare_class_warning(const Scenario& scenario) {
   const std::vector<double> frequencies = class_frequencies(scenario);
   const auto& classes = scenario.blocks.classes;
   if (frequencies.size() < 2 || frequencies.size() != classes.size()) return {};
-  double weights = 0.0, events = 0.0;
-  for (const BlockClass& c : classes) weights += c.weight;
-  for (const double f : frequencies) events += f;
+  const double weights = total_weight(classes);
+  const double events = std::accumulate(frequencies.begin(), frequencies.end(), 0.0);
   std::vector<std::string> rare;
   for (std::size_t i = 0; i < classes.size(); ++i) {
     const double drawn = static_cast<double>(scenario.released()) * classes[i].weight / weights;

@@ -151,8 +151,7 @@ std::vector<double> cell_frequencies(const Scenario& s, const Sources& found, do
     for (std::size_t i = 0; i < cells.size(); ++i)
       cells[i] *= s.features[s.sources[i].feature].frequency / sums[s.sources[i].feature];
   } else {
-    double sum = 0.0;
-    for (const double cell : cells) sum += cell;
+    const double sum = std::accumulate(cells.begin(), cells.end(), 0.0);
     for (double& cell : cells) cell *= all_classes / sum;
   }
   return cells;
@@ -162,9 +161,8 @@ std::vector<double> cell_frequencies(const Scenario& s, const Sources& found, do
 std::vector<double> class_factors(const Scenario& s, const std::vector<double>& frequencies) {
   const auto& classes = s.blocks.classes;
   if (frequencies.size() < 2) return {1.0};
-  double weights = 0.0, events = 0.0;
-  for (const BlockClass& c : classes) weights += c.weight;
-  for (const double f : frequencies) events += f;
+  const double weights = total_weight(classes);
+  const double events = std::accumulate(frequencies.begin(), frequencies.end(), 0.0);
   std::vector<double> factors;
   for (std::size_t c = 0; c < classes.size(); ++c)
     factors.push_back(events > 0.0 ? frequencies[c] / events * weights / classes[c].weight : 0.0);
@@ -272,9 +270,7 @@ std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t 
   check_contradictions(s, found);
   if (found.count() == 0) return std::nullopt;
   const std::vector<double> by_class = class_frequencies(s);
-  double events = 0.0;
-  for (const double f : by_class) events += f;
-  if (found.total) events = s.frequency.total;
+  const double events = found.total ? s.frequency.total : std::accumulate(by_class.begin(), by_class.end(), 0.0);
   const std::vector<double> cells = cell_frequencies(s, found, events), factors = class_factors(s, by_class);
   const double largest_factor = *std::ranges::max_element(factors);
   if (largest_factor > kLargestFactor) refuse_light_class(s, by_class, factors);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "talus/base/text.hpp"
+#include "talus/simulate/scenario/block_class.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
 #include "talus/terrain/source_slope.hpp"
 
@@ -36,8 +37,7 @@ double mean_volume(const VolumePowerLaw& law) {
 /// By class of blocks: its share of the blocks.
 std::vector<double> class_shares(const Scenario& s) {
   if (s.blocks.classes.empty()) return {1.0};
-  double weights = 0.0;
-  for (const BlockClass& block : s.blocks.classes) weights += block.weight;
+  const double weights = total_weight(s.blocks.classes);
   std::vector<double> shares;
   for (const BlockClass& block : s.blocks.classes) shares.push_back(block.weight / weights);
   return shares;

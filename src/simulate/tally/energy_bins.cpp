@@ -13,4 +13,10 @@ EnergyBins::EnergyBins(std::vector<double> thresholds) : thresholds_(std::move(t
     first_above_.push_back(static_cast<int>(std::ranges::upper_bound(edges_, threshold) - edges_.begin()) - 1);
 }
 
+std::optional<std::size_t> EnergyBins::threshold_at(double energy) const {
+  const auto known = std::ranges::find(thresholds_, energy);
+  if (known == thresholds_.end()) return std::nullopt;
+  return static_cast<std::size_t>(known - thresholds_.begin());
+}
+
 }  // namespace talus

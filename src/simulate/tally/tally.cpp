@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "passages.hpp"
 #include "tally_region.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/simulate/tally/checked_sum.hpp"
@@ -40,8 +41,10 @@ std::int64_t fixed_length(double length) {
   return fixed_point(length, 1.0 / CellRecord::kLengthUnit);
 }
 
-std::size_t cell_in_region(int column, int row) {
-  return static_cast<std::size_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
+/// Empties a container and releases its memory, which an assignment of `{}` would keep.
+template <class Container>
+void give_back(Container& container) {
+  Container(container.get_allocator()).swap(container);
 }
 
 /// By cell of a region, where its visits begin when they are sorted by cell.
@@ -58,54 +61,6 @@ void prefetch(const void* memory, std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(memory) + i, 1);
 }
 
-/// The cells of a region that the source cell of a trajectory has reached, in this batch or another.
-class ReachOf {
- public:
-  ReachOf(const VisitBatch& batch, std::size_t region) : batch_(batch), region_(region) {}
-
-  /// Whether the source cell reaches the cell for the first time; then marks it as reached. Trajectories of one source
-  /// cell follow each other, so only the first one in a group is tested.
-  bool first(std::uint16_t trajectory, std::size_t cell) {
-    const VisitBatch::Trajectory& t = batch_.trajectories()[trajectory];
-    if (!t.reach) return true;
-    if (t.reach.get() != reach_) {
-      reach_ = t.reach.get();
-      cells_ = &reach_->cells(region_);
-    }
-    if ((*cells_)[cell]) return false;
-    return (*cells_)[cell] = true;
-  }
-
- private:
-  const VisitBatch& batch_;
-  std::size_t region_;
-  SourceReach* reach_ = nullptr;
-  SourceReach::Cells* cells_ = nullptr;
-};
-
-/// Whether two trajectories of a batch, `first` before `second`, come from the same block.
-bool of_one_block(const VisitBatch& batch, std::uint16_t first, std::uint16_t second) {
-  const auto& all = batch.trajectories();
-  return std::all_of(&all[first] + 1, &all[second] + 1, [](const VisitBatch::Trajectory& t) { return t.piece; });
-}
-
-/// How paths end in a cell.
-struct PathEnds {
-  bool deposited = false, trapped = false, left = false;
-};
-
-/// Adds the ends of a path to the record, except those that its block already has in this cell: all pieces of a block
-/// count once.
-void count_ends(const PathEnds& ends, PathEnds& of_block, CellRecord& record) {
-  const auto count = [](bool ended, bool& before, std::uint32_t& sum) {
-    sum += ended && !before ? 1U : 0U;
-    before = before || ended;
-  };
-  count(ends.deposited, of_block.deposited, record.deposits);
-  count(ends.trapped, of_block.trapped, record.trapped);
-  count(ends.left, of_block.left, record.exits);
-}
-
 /// The lengths of a visit [m]: all counted parts, then those above each threshold, as far as there are some.
 std::span<const float> lengths_of(const Visit& visit, std::span<const float> mixed, std::size_t levels,
                                   std::array<float, 64>& buffer) {
@@ -113,79 +68,6 @@ std::span<const float> lengths_of(const Visit& visit, std::span<const float> mix
   const std::size_t count = 1U + visit.above;
   for (std::size_t i = 0; i < count; ++i) buffer[i] = visit.length;
   return {buffer.data(), count};
-}
-
-/// The visits of one trajectory to a cell, joined.
-struct Passage {
-  Maxima largest;
-  PathEnds ends;
-};
-
-/// Joins the visits of the next trajectory and moves `visit` past them; adds their impacts to the record.
-Passage next_passage(const Visit*& visit, const Visit* end, CellRecord& record) {
-  const std::uint16_t trajectory = visit->trajectory;
-  Passage passage;
-  for (; visit != end && visit->trajectory == trajectory; ++visit) {
-    passage.largest.raise(*visit);
-    record.impacts += visit->impacts;
-    passage.ends.deposited |= visit->deposited != 0;
-    passage.ends.trapped |= visit->trapped != 0;
-    passage.ends.left |= visit->left != 0;
-  }
-  return passage;
-}
-
-/// Sets the values of each trajectory, the largest of its visits, and adds the counts of the visits to the record.
-void gather(std::span<const Visit> visits, const VisitBatch& batch, CellValues& values, CellRecord& record,
-            ReachOf& reach) {
-  values.make_room(visits.size());
-  const Visit* const end = visits.data() + visits.size();
-  std::size_t n = 0;
-  std::uint32_t source = 0;
-  std::uint16_t previous = 0;  // the trajectory of the last value
-  PathEnds ends;               // of the block and its pieces, in this cell
-  for (const Visit* visit = visits.data(); visit != end;) {
-    const std::uint16_t trajectory = visit->trajectory;
-    const Passage passage = next_passage(visit, end, record);
-    const VisitBatch::Trajectory& of = batch.trajectories()[trajectory];
-    if (of.piece && n > 0 && of_one_block(batch, previous, trajectory)) {  // all pieces of a block have one value
-      count_ends(passage.ends, ends, record);
-      for_each_quantity([&](auto q) {
-        float& value = values.lists[q][n - 1];
-        value = std::max(value, kQuantityTable[q].value(passage.largest, of.size.mass));
-      });
-      continue;
-    }
-    previous = trajectory;
-    ends = {};
-    count_ends(passage.ends, ends, record);
-    if (n == 0 || of.source != source) {
-      source = of.source;
-      record.sources += reach.first(trajectory, visits.front().cell) ? 1U : 0U;
-    }
-    if (values.keep_annual_shares) values.annual_shares[n] = of.annual_share;
-    for_each_quantity([&](auto q) { values.lists[q][n] = kQuantityTable[q].value(passage.largest, of.size.mass); });
-    ++n;
-  }
-  TALUS_EXPECT(n > 0, "a group of visits has a value");
-  values.count = n;
-}
-
-/// Sets the energy with rotation of each trajectory, the largest of its visits, as `gather` the other values.
-void gather_totals(std::span<const Visit> visits, std::span<const float> squares, const VisitBatch& batch,
-                   std::vector<float>& totals) {
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < visits.size();) {
-    const std::uint16_t trajectory = visits[i].trajectory;
-    const bool piece = n > 0 && batch.has_pieces() && of_one_block(batch, visits[i - 1].trajectory, trajectory);
-    Maxima largest;
-    for (; i < visits.size() && visits[i].trajectory == trajectory; ++i)
-      largest.speed_squared = std::max(largest.speed_squared, squares[i]);
-    const double mass = batch.trajectories()[trajectory].size.mass;
-    const float total = kQuantityTable[index_of(Quantity::Energy)].value(largest, mass);
-    totals[n - (piece ? 1 : 0)] = piece ? std::max(totals[n - 1], total) : total;
-    n += piece ? 0 : 1;
-  }
 }
 
 }  // namespace
@@ -229,11 +111,9 @@ Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vecto
       limits_(floats_below(thresholds_)),
       threshold_count_(std::accumulate(thresholds_.begin(), thresholds_.end(), std::size_t{0},
                                        [](std::size_t sum, const auto& of) { return sum + of.size(); })),
-      regions_across_((grid.columns + kRegionSide - 1) / kRegionSide),
-      region_count_(static_cast<std::size_t>(regions_across_) *
-                    static_cast<std::size_t>((grid.rows + kRegionSide - 1) / kRegionSide)),
-      regions_(static_cast<Region*>(memory.allocate(region_count_ * sizeof(Region))), {memory, 0}) {
-  for (std::size_t& made = regions_.get_deleter().count; made < region_count_; ++made)
+      layout_(grid),
+      regions_(static_cast<Region*>(memory.allocate(layout_.count() * sizeof(Region))), {memory, 0}) {
+  for (std::size_t& made = regions_.get_deleter().count; made < layout_.count(); ++made)
     std::construct_at(&regions_[made], memory);
 }
 
@@ -274,7 +154,7 @@ std::uint64_t Tally::add(const VisitBatch& batch) {
 
 std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const VisitBatch& batch, Work& work) {
   memory().keep_below_limit();
-  TALUS_EXPECT(index < region_count_, "a visit lies in a region of the tally");
+  TALUS_EXPECT(index < layout_.count(), "a visit lies in a region of the tally");
   Region& region = regions_[index];
   TALUS_EXPECT(batch.levels() <= 1 + energy_thresholds(), "a batch has no other thresholds than the tally");
   TALUS_EXPECT(visits.totals.size() == (keep_total_ ? visits.visits.size() : 0), "each visit has its total energy");
@@ -360,16 +240,15 @@ void Tally::count_exceedances(std::uint32_t* over, const CellValues& values, con
   }
 }
 
-const Tally::Region& Tally::region_of(int column, int row) const {
-  return regions_[static_cast<std::size_t>(row / kRegionSide) * static_cast<std::size_t>(regions_across_) +
-                  static_cast<std::size_t>(column / kRegionSide)];
+Tally::Place Tally::place_of(int column, int row) const {
+  const Region& region = regions_[layout_.of_cell(column, row)];
+  const std::uint16_t slot = region.slot.empty() ? std::uint16_t{0} : region.slot[cell_in_region(column, row)];
+  return {region, slot == 0 ? kNoRecord : slot - std::size_t{1}};
 }
 
 const CellRecord* Tally::find(int column, int row) const {
-  const Region& region = region_of(column, row);
-  if (region.slot.empty()) return nullptr;
-  const std::uint16_t slot = region.slot[cell_in_region(column, row)];
-  return slot == 0 ? nullptr : &region.records[slot - 1U];
+  const auto [region, record] = place_of(column, row);
+  return record == kNoRecord ? nullptr : &region.records[record];
 }
 
 void Tally::prefetch_record(int column, int row) const {
@@ -377,26 +256,25 @@ void Tally::prefetch_record(int column, int row) const {
 }
 
 const HazardCell* Tally::hazard(int column, int row) const {
-  const Region& region = region_of(column, row);
-  if (!hazard_ || region.slot.empty()) return nullptr;
-  const std::uint16_t slot = region.slot[cell_in_region(column, row)];
-  return slot == 0 ? nullptr : &region.hazards[slot - 1U];
+  if (!hazard_) return nullptr;
+  const auto [region, record] = place_of(column, row);
+  return record == kNoRecord ? nullptr : &region.hazards[record];
 }
 
 const EnergyTotal* Tally::energy_total(int column, int row) const {
   if (!keep_total_) return nullptr;
-  const Region& region = region_of(column, row);
-  return &region.totals[region.slot[cell_in_region(column, row)] - 1U];
+  const auto [region, record] = place_of(column, row);
+  return &region.totals[record];
 }
 
 const std::uint32_t* Tally::exceedances(int column, int row) const {
-  const Region& region = region_of(column, row);
-  return region.exceedances.data() + (region.slot[cell_in_region(column, row)] - 1U) * threshold_count_;
+  const auto [region, record] = place_of(column, row);
+  return region.exceedances.data() + record * threshold_count_;
 }
 
 const std::int64_t* Tally::lengths_above(int column, int row) const {
-  const Region& region = region_of(column, row);
-  return region.lengths.data() + (region.slot[cell_in_region(column, row)] - 1U) * energy_thresholds();
+  const auto [region, record] = place_of(column, row);
+  return region.lengths.data() + record * energy_thresholds();
 }
 
 bool Tally::is_touched(std::size_t region) const {
@@ -423,8 +301,8 @@ void Tally::save(std::size_t index, ByteWriter& out) const {
 void Tally::take(std::size_t index, ByteWriter& out) {
   save(index, out);
   Region& region = regions_[index];
-  region.slot = {}, region.exceedances = {}, region.lengths = {};
-  region.records.clear(), region.totals.clear(), region.hazards.clear();
+  give_back(region.slot), give_back(region.exceedances), give_back(region.lengths);
+  give_back(region.records), give_back(region.totals), give_back(region.hazards);
 }
 
 void Tally::merge(std::size_t index, ByteReader& in) {
@@ -451,13 +329,13 @@ void Tally::merge(std::size_t index, ByteReader& in) {
 
 std::vector<std::uint64_t> Tally::cells_by_passages(std::uint32_t most) const {
   std::vector<std::uint64_t> cells(most + 1U);
-  for (std::size_t i = 0; i < region_count_; ++i)
+  for (std::size_t i = 0; i < regions(); ++i)
     for (const CellRecord& record : regions_[i].records) ++cells[std::min(record.passages, most)];
   return cells;
 }
 
 std::uint64_t Tally::touched_cells() const {
-  return std::accumulate(&regions_[0], &regions_[0] + region_count_, std::uint64_t{0},
+  return std::accumulate(&regions_[0], &regions_[0] + regions(), std::uint64_t{0},
                          [](std::uint64_t sum, const Region& region) { return sum + region.records.size(); });
 }
 

@@ -41,7 +41,7 @@ VisitBatch::VisitBatch(const Grid& grid, LengthRules lengths)
       lengths_(std::move(lengths)),
       limits_(lengths_.energies.size()),
       here_(lengths_.levels()),
-      regions_across_((grid.columns + kRegionSide - 1) / kRegionSide) {}
+      layout_(grid) {}
 
 void VisitBatch::clear() {
   for (auto region = regions_.begin(); region != regions_.end();) {
@@ -241,18 +241,17 @@ float VisitBatch::counted_share(const Span& span, float limit, const Moment& fro
 }
 
 Visit& VisitBatch::new_visit(int column, int row) {
-  TALUS_EXPECT(column >= 0 && row >= 0 && column / kRegionSide < regions_across_, "a visit lies in the grid");
+  TALUS_EXPECT(column >= 0 && row >= 0 && column / kRegionSide < layout_.across, "a visit lies in the grid");
   TALUS_EXPECT(!trajectories_.empty() && trajectories_.size() <= 0x10000, "a visit is of a trajectory of the batch");
   close_visit();
   column_ = column;
   row_ = row;
-  const std::size_t index = static_cast<std::size_t>(row / kRegionSide) * static_cast<std::size_t>(regions_across_) +
-                            static_cast<std::size_t>(column / kRegionSide);
+  const std::size_t index = layout_.of_cell(column, row);
   if (index != region_index_) {
     region_index_ = index;
     region_ = &regions_[index];
   }
-  const auto cell = static_cast<std::uint16_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
+  const auto cell = static_cast<std::uint16_t>(cell_in_region(column, row));
   if (keep_total_) region_->totals.push_back(0.0F);
   const auto trajectory = static_cast<std::uint16_t>(trajectories_.size() - 1);
   size_ -= region_->visits.room();

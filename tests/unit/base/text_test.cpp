@@ -87,6 +87,13 @@ TEST(NumberIn, IsTheOneAtTheBeginning) {
   EXPECT_TRUE(std::isnan(number_in("")));
 }
 
+TEST(DecimalNumber, IsTheWholeText) {
+  EXPECT_EQ(decimal_number("0.25"), 0.25);
+  EXPECT_EQ(decimal_number("-1e+03"), -1000.0);
+  for (const char* text : {"", " 500", "500 ", "5.0.0", "0x1p9", "+5", "1e999", "none"})
+    EXPECT_EQ(decimal_number(text), std::nullopt) << text;
+}
+
 TEST(Percent, HasSignificantDigits) {
   EXPECT_EQ(percent(0.2158), "21.6 %");
   EXPECT_EQ(percent(0.2158, 2), "22 %");

@@ -61,8 +61,6 @@ TEST(JointParameters, OneNumberSetsTheModelsOfBoth) {
   ASSERT_EQ(joint.free.size(), 3U);
   EXPECT_EQ(joint.free[0].key, "a: ground.zones.default.En50");
   EXPECT_EQ(joint.free[1].key, "ground.zones.default.phi");
-  EXPECT_TRUE(joint.shared(1));
-  EXPECT_FALSE(joint.shared(0));
   const FitProblem problem({{"a", c, start, rows, joint.sites[0]}, {"b", c, start, rows, joint.sites[1]}}, joint.free);
   const std::vector<Model> models = problem.models(Eigen::Vector3d(0.5, 0.25, -0.5));
   EXPECT_DOUBLE_EQ(own[0][1].get(models[0]), own[0][1].get(start) + 2.0);  // sd 8 degrees

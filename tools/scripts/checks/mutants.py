@@ -48,7 +48,7 @@ MUTANTS = [
     ("src/simulate/tally/cell_record.cpp", "  add_checked(exits, other.exits);\n", "", "*Tally*:*Cell*:*Merge*"),
     ("include/talus/simulate/tally/checked_sum.hpp", "value * units + 0.5", "value * units", "*Tally*:*Cell*:*Mean*"),
     ("src/simulate/tally/tally.cpp", "values[i] > limit ? 1U : 0U", "values[i] >= limit ? 1U : 0U", "*Tally*:*Exceed*:*Thresh*"),
-    ("src/simulate/tally/tally.cpp", "row % kRegionSide * kRegionSide + column % kRegionSide", "column % kRegionSide * kRegionSide + row % kRegionSide", "*Tally*:*Region*"),
+    ("include/talus/simulate/plan/region.hpp", "row % kRegionSide * kRegionSide + column % kRegionSide", "column % kRegionSide * kRegionSide + row % kRegionSide", "*Tally*:*Region*:*Visit*"),
     ("src/simulate/tally/histogram.cpp", "std::ceil(share * count)", "std::floor(share * count)", "*Histogram*:*Percentile*"),
     ("src/simulate/tally/histogram.cpp", "if (width_ == 1 && count > 0xFFU) widen(2);", "if (width_ == 1 && count > 0x1FFU) widen(2);", "*Histogram*"),
     ("src/simulate/tally/histogram.cpp", "add_checked(count, more);", "count = more;", "*Histogram*:*Merge*"),

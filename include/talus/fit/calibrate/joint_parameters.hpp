@@ -7,9 +7,6 @@ namespace talus {
 struct JointParameters {
   std::vector<Parameter> free;                    ///< "authume: ground.zones.default.En50"; shared ones without a site
   std::vector<std::vector<SiteParameter>> sites;  ///< by site, in the order of its own parameters
-
-  /// Whether one number sets the models of several sites.
-  bool shared(std::size_t number) const;
 };
 
 /// Joins the parameters of several campaigns. Those that `share` names become one number for all sites that have it: a

@@ -32,6 +32,8 @@ struct Parameter {
   double z(double value) const;
   /// z, cut to the bounds.
   double within(double place) const;
+  /// Whether z cannot be below zero: of most amounts of effects.
+  bool one_sided() const { return lower >= centre; }
 };
 
 /// The parameters `keys` of ground_fields() in the given zones, with the start as centre of the prior. theta_scale,
@@ -48,9 +50,9 @@ inline constexpr double kLeastStart = 0.01;
 /// and its interval would be one around another start.
 void check_start(std::span<const Parameter> parameters, const Model& start);
 
-/// The zones that enough simulated paths of the asked blocks touch: at least `share` of them. Size: zones of the
+/// The zones that enough simulated paths of the asked blocks touch: at least 5 % of them. Size: zones of the
 /// campaign; an impact in a band of other ground counts for the zone under the band.
-std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs, double share = 0.05);
+std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs);
 
 /// A model with the free parameters at z.
 Model model_at(const Model& start, std::span<const Parameter> free, const Eigen::VectorXd& z);

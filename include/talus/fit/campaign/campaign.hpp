@@ -76,6 +76,8 @@ struct Campaign {
 std::vector<bool> fitting_rows(const Campaign& campaign);
 /// The blocks that are held out.
 std::vector<bool> holdout_rows(const Campaign& campaign);
+/// Number of the blocks that are among some rows.
+std::size_t count_of_rows(const std::vector<bool>& rows);
 /// Whether all blocks of some rows were released and came to rest on the terrain, so that none is missing because it
 /// left. Trials that left went farther than these. Where blocks are missing, the others are those that happened to
 /// stay, and compare with the trials that stay. So do mapped blocks, of which those that left were never seen.

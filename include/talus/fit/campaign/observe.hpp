@@ -58,6 +58,9 @@ struct BlockRuns {
   std::uint32_t cut_short = 0;              ///< trials that ended at a limit, if `Effort` bounds them: in a search
 };
 
+/// The places where the trials of a block came to rest [m, local].
+std::vector<Eigen::Vector2d> stops_of(const BlockRuns& runs);
+
 /// First of the trials that score a fitted model: no search has used their random numbers.
 inline constexpr std::uint32_t kUnseen = 1'000'000'000;
 

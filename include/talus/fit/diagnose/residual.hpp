@@ -34,6 +34,7 @@ class ResidualSpace {
   ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs, const DiagnosisRules& rules = {});
 
   const std::vector<Observable>& observables() const { return observables_; }
+  const DiagnosisRules& rules() const { return rules_; }
   /// Moments of z of an observable of a block in a right model.
   struct Moments {
     double mean = 0.0, variance = 1.0, fourth = 3.0;  ///< the variance and the fourth moment about the mean

@@ -2,7 +2,7 @@
 #include <limits>
 #include <map>
 
-#include "talus/fit/diagnose/candidates.hpp"
+#include "talus/fit/diagnose/candidate.hpp"
 #include "talus/fit/diagnose/dispersion.hpp"
 #include "talus/fit/diagnose/verdict.hpp"
 

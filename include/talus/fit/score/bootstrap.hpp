@@ -34,7 +34,7 @@ struct Difference {
   std::vector<double> draws;  ///< of the bootstrap
 };
 Difference difference(const Score& before, const Score& after, std::span<const std::uint32_t> streams,
-                      std::uint32_t draws = 1000, std::uint64_t seed = 1);
+                      std::uint32_t draws = 1000);
 
 /// The mean of the differences of pairs of scores of the same rows, such as those of several cross-validations; the
 /// draws take the same blocks of every pair.

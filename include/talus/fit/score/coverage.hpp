@@ -55,8 +55,7 @@ double random_rank(std::span<const double> simulated, double measured, double dr
 /// block with fewer than ten simulated values.
 ///
 /// @param runs  by block of the campaign; those asked for must have been simulated
-std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
-                               std::uint64_t seed = 1);
+std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask);
 
 /// Whether blocks leave the terrain more often in the model than they did.
 struct LeavingTest {

@@ -7,7 +7,6 @@
 #include "talus/base/expect.hpp"
 #include "talus/base/sample.hpp"
 #include "talus/fit/campaign/observe.hpp"
-#include "talus/fit/score/fair_scores.hpp"
 
 namespace talus {
 

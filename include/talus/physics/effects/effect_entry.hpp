@@ -1,7 +1,6 @@
 #pragma once
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>

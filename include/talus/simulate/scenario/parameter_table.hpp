@@ -12,7 +12,7 @@ namespace talus {
 /// The parameters of a ground: theta_scale, psi_scale, En50, Et50, phi, shape_min, shape_max.
 std::span<const Field<Ground>> ground_fields();
 
-/// The scalars of a run: seed, trajectories, blocks.density, model.*, output.trajectories.
+/// The scalars of a run: seed, trajectories, day, blocks.density, model.*, output.trajectories.
 std::span<const Field<Scenario>> scenario_fields();
 
 /// The numbers that are lists, ranges or attributes of features: blocks.diameter, sources.release_height and so on.

@@ -1,6 +1,8 @@
 #pragma once
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace talus {
@@ -30,6 +32,8 @@ class EnergyBins {
   /// The first bin above a threshold.
   int above(std::size_t threshold) const { return first_above_[threshold]; }
   const std::vector<double>& thresholds() const { return thresholds_; }
+  /// Index of the threshold of exactly this energy [kJ]; nothing if there is none.
+  std::optional<std::size_t> threshold_at(double energy) const;
 
  private:
   static constexpr int kShift = 20;  // a float keeps 23 bits after the leading one: 3 of them number the bins

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "talus/simulate/plan/region.hpp"
 #include "talus/simulate/tally/cell_record.hpp"
 #include "talus/simulate/tally/hazard_tally.hpp"
 #include "talus/simulate/tally/source_reach.hpp"
@@ -64,7 +65,7 @@ class Tally {
   bool is_touched(std::size_t region) const;
 
   /// Number of regions. They are numbered row by row from the south-west.
-  std::size_t regions() const { return region_count_; }
+  std::size_t regions() const { return layout_.count(); }
   /// Writes the records of a region; nothing if no trajectory touched it. Not while batches are added.
   void save(std::size_t region, ByteWriter& out) const;
   /// Writes the records of a region and deletes them.
@@ -88,7 +89,14 @@ class Tally {
     AnnualWeights weights;
   };
 
-  const Region& region_of(int column, int row) const;
+  /// Where the record of a cell is.
+  struct Place {
+    const Region& region;
+    std::size_t record;  // its index in the region, or kNoRecord
+  };
+  static constexpr std::size_t kNoRecord = ~std::size_t{0};
+
+  Place place_of(int column, int row) const;
   std::uint64_t score(std::size_t index, const RegionVisits& visits, const VisitBatch& batch, Work& work);
   void add_lengths(const Group& group, std::span<const float> mixed, const VisitBatch& batch, Region& region) const;
   std::size_t energy_thresholds() const { return thresholds_[Quantity::Energy].size(); }
@@ -98,8 +106,7 @@ class Tally {
   Thresholds thresholds_;
   PerQuantity<std::vector<float>> limits_;  // the thresholds for values, which are floats
   std::size_t threshold_count_;             // of all quantities
-  int regions_across_ = 0;
-  std::size_t region_count_ = 0;
+  Regions layout_;
   bool keep_total_ = false;
   std::unique_ptr<Hazard> hazard_;  // null: hazard is not counted
   std::unique_ptr<Region[], EndRegions> regions_;

@@ -139,7 +139,7 @@ class VisitBatch {
   LengthRules lengths_;
   std::vector<float> limits_;  // square of the speed at each energy threshold, for the mass of the trajectory [m^2/s^2]
   std::vector<float> here_;    // lengths of the current visit by the number of thresholds that they are above [m]
-  int regions_across_;
+  Regions layout_;
   std::unordered_map<std::size_t, RegionVisits> regions_;
   std::vector<VisitList::Piece> spare_;
   std::vector<Trajectory> trajectories_;

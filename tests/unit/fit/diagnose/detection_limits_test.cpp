@@ -6,6 +6,7 @@
 #include <set>
 
 #include "support/campaigns.hpp"
+#include "talus/fit/diagnose/candidates.hpp"
 
 namespace talus::test {
 namespace {

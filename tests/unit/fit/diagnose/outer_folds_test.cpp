@@ -9,6 +9,7 @@
 #include "talus/base/error.hpp"
 #include "talus/fit/diagnose/diagnose.hpp"
 #include "talus/fit/diagnose/several_sites.hpp"
+#include "talus/fit/score/fair_scores.hpp"
 
 namespace talus::test {
 namespace {

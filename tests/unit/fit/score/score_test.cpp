@@ -5,6 +5,7 @@
 
 #include "support/campaigns.hpp"
 #include "talus/fit/score/bootstrap.hpp"
+#include "talus/fit/score/fair_scores.hpp"
 #include "talus/fit/score/intervals.hpp"
 
 namespace talus::test {

@@ -243,5 +243,17 @@ TEST(IsRecorded, ExactlyAsManyAsWantedAndEvenlySpread) {
       }
 }
 
+/// Of 4e12 releases and 1e7 paths each 400 000th is recorded; their product is above 2^64.
+TEST(IsRecorded, LargestPlans) {
+  Scenario s = plain();
+  s.sources.assign(4000, s.sources.front());
+  s.trajectories = 1'000'000'000;
+  s.output.paths = 10'000'000;
+  const auto last = static_cast<std::uint32_t>(s.sources.size() - 1);
+  EXPECT_TRUE(is_recorded(s, last, s.trajectories - 1));
+  EXPECT_TRUE(is_recorded(s, last, s.trajectories - 400'001));
+  for (std::uint32_t before = 2; before < 1000; ++before) EXPECT_FALSE(is_recorded(s, last, s.trajectories - before));
+}
+
 }  // namespace
 }  // namespace talus
