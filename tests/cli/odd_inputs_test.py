@@ -579,7 +579,8 @@ class ForgedHazard(OneThread, KeptRuns, RunCase):
         for change in ({"columns": 2**31 - 1}, {"columns": 2**31}, {"columns": 2**32 + 60}, {"rows": 2**31 - 1}, {"columns": -1},
                        {"columns": 0}, {"columns": 60.5}, {"columns": "60"}, {"cell_x": 0}, {"cell_x": 1e300}, {"unit": 0},
                        {"unit": None}, {"energy_thresholds": list(range(1, 100000))}, {"energy_thresholds": [300, 30]},
-                       {"energy_thresholds": [-1]}, {"left": -5}):
+                       {"energy_thresholds": [-1]}, {"left": -5}, {"total": 0}, {"largest": 0}, {"trajectories": 0},
+                       {"largest_diameter": -1}):
             with self.subTest(str(change)[:60]):
                 self.refused(self.header(**change))
 
