@@ -154,7 +154,7 @@ class Design(Case):
         self.rows += [(0, 103 + i, "road", 10.0, 0.1, 3000.0, 80.0) for i in range(3)]
         self.save()
         (note,) = [n for n in self.design()[1]["notes"] if "too few crossings for a design" in n]
-        self.assertIn("blocks come above SEL on 50.0-75.0 m (up to 2400 kJ), above h_i on 25.0-50.0 m (up to 30 m)", note)
+        self.assertIn("blocks are above SEL on 50.0-75.0 m (up to 2400 kJ), above h_i on 25.0-50.0 m (up to 30 m)", note)
 
     def test_a_block_larger_than_those_that_give_the_speed_is_said(self):
         """100 blocks of 3 t at 20 m/s, one of 30 t at 1 m/s: together 0.5 x 30 t x (20 m/s)^2 = 6000 kJ, which no block has."""

@@ -47,10 +47,10 @@ class Layers(Case):
         for part in ("|geometrytype=Polygon", "|layerid=abc"):
             self.fails(2, f"'{part}' is not read", arguments=[*check, site + "|layername=cliffs" + part])
         for number in ("-5", "99999999999", "1x", ""):
-            self.fails(2, f"'|layerid={number}' is not read", "must be a whole number from 0", "|layername=houses",
+            self.fails(2, f"'|layerid={number}' is not read", "a whole number from 0", "|layername=houses",
                        arguments=[*check, site + "|layerid=" + number])
         for parts in ("|layername=houses|layername=cliffs", "|layername=cliffs|layerid=1", "|layername="):
-            self.fails(2, f"'{parts[parts.rindex('|'):]}' is not read", "one layer by its name", arguments=[*check, site + parts])
+            self.fails(2, f"'{parts[parts.rindex('|'):]}' is not read: a file is followed by one layer", arguments=[*check, site + parts])
         self.fails(2, "has a layer already", arguments=[*check, site + "|layername=cliffs", "--sources-layer", "houses"])
         self.fails(2, "--sources-layer: has an empty value", arguments=[*check, site, "--sources-layer", ""])
         self.fails(2, "--parameters: has an empty value", arguments=[*check, site + "|layername=cliffs", "--parameters", ""])

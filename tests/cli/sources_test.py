@@ -102,6 +102,7 @@ class Sources(Case):
         self.fails(2, "no folder can be made", arguments=[*arguments[:-1], self.path("dem.tif/cells.gpkg")])
         self.fails(2, "none.tif", arguments=["sources", "--dem", self.path("none.tif"), "-o", self.path("cells.gpkg")])
         self.fails(2, "--dem", arguments=["sources", "-o", self.path("cells.gpkg")])
+        self.fails(2, "too long for its temporary file; give a shorter one", arguments=[*arguments[:-1], self.path(250 * "d" + ".gpkg")])
         self.assert_nothing_left(before)
 
     def test_a_file_is_kept_and_overwritten_when_asked(self):

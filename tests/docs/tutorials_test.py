@@ -46,7 +46,7 @@ class Tutorials(unittest.TestCase):
             shutil.copytree(os.path.join(ROOT, "data"), os.path.join(folder, "data"))
             done = subprocess.run(["bash", "-c", script_of(page, commands_of_program())], cwd=folder, capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, f"{page}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}")
-            return done.stdout
+            return done.stdout + done.stderr
 
     def test_first_map(self):
         self.run_page("first-map.md")
@@ -55,7 +55,8 @@ class Tutorials(unittest.TestCase):
         """The numbers of the page are those that its commands print."""
         printed = self.run_page("road-job.md")
         for figure in ("forest road,6,3481,0.0445513", "forest road,6,51,0.000654185", "forest road,6,10668,0.136347", "Suedgrat,0.0202267,0.45401",
-                       "SEL     383.1 kJ", "MEL     498.1 kJ", "h_i     2.412 m"):
+                       "SEL     383.1 kJ", "MEL     498.1 kJ", "h_i     2.412 m",
+                       "3 892 caught, 56 over it, 0 through it", "657 over it, 0 through it"):
             self.assertIn(figure, printed)
 
     def test_prepare_data(self):

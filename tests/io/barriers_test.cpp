@@ -30,7 +30,7 @@ TEST_F(BarrierFile, EachFeatureWithItsNumbers) {
   EXPECT_TRUE(layer.warnings.empty());
 }
 
-/// A net drawn there and back would take its capacity twice; two nets on one line are meant so.
+/// A net drawn there and back would take its capacity twice; two nets on one line are intended.
 TEST_F(BarrierFile, OneOnItselfIsSaid) {
   EXPECT_TRUE(said(read(fields_, {{"LINESTRING(1 1,1 7,5 7,1 7,1 3)", {"a", "4", "100"}}}).warnings,
                    "lines of barrier a lie on each other for 8 m: it takes its capacity from a block there more than"));

@@ -438,6 +438,8 @@ TEST_F(Campaigns, AModelKeepsItsBarriersAndTheBiasOfItsInstruments) {
          {"m.toml:1", "does nothing, must give speed, jump or spin"});
   faulty("[[instrument_bias]]\nscreen = \"S1\"\nspeed = 0.5\n[[instrument_bias]]\nscreen = \"S1\"\njump = 0.1\n",
          {"m.toml:4", "of screen S1 is given twice"});
+  faulty("[barriers]\nfile = \"n.gpkg\"\n", {"m.toml:2", "unknown key 'file'"});
+  faulty("[barriers]\nline = []\n", {"m.toml:1", "[barriers] names no barrier, must have line"});
   faulty("[barriers]\nline = 3\n", {"m.toml:2", "barriers.line", "list of tables"});
   faulty("[[barriers.line]]\nheight = 2\nfrom = [1, 2]\n", {"m.toml:1", "has no to"});
   faulty("[[barriers.line]]\nheight = -2\nfrom = [1, 2]\nto = [3, 4]\n", {"m.toml:2", "height = -2", "0 to 100"});

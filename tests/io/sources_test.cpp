@@ -260,7 +260,7 @@ TEST_F(Sources, AnInvalidPolygonIsMendedWithAWarning) {  // a bow tie: x = 5 and
   EXPECT_TRUE(
       said(layer.warnings, "feature 1: polygon was invalid (Self-intersection at or near point 600020 5200021)"));
   expect_input_error([&] { read({{"POLYGON((0 0,10 0,20 0,0 0))"}}); },
-                     {"s.gpkg: feature 1", "polygon is invalid", "has no area: draw it anew"});
+                     {"s.gpkg: feature 1", "polygon is invalid", "no area is left when it is mended: draw it anew"});
 }
 
 TEST_F(Sources, CellsWithoutTerrainAreLeftOut) {

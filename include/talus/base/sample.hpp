@@ -37,7 +37,7 @@ inline double median_of(std::vector<double> sample) {
   return quantile(sample, 0.5);
 }
 
-/// The middle of a sample, `kConfidence` of it; NaN if it is empty.
+/// Interval that holds the middle `kConfidence` of a sample; NaN if it is empty.
 inline Interval middle_of(std::vector<double> sample) {
   if (sample.empty()) return {};
   std::sort(sample.begin(), sample.end());

@@ -13,8 +13,8 @@ std::string text_of(double value);
 /// The number at the beginning of a text, whatever the locale of the program; NaN if there is none.
 double number_in(std::string_view text);
 
-/// The decimal number that a whole text is, whatever the locale: "500", "1e3"; nothing if it has blanks, a plus sign,
-/// hexadecimal digits or other letters.
+/// The decimal number that a whole text is, whatever the locale: "500", "1e3"; nothing if there is anything else in it:
+/// blanks, a plus sign, 0x, inf, nan.
 std::optional<double> decimal_number(std::string_view text);
 
 /// A number for a file with at most `digits` significant digits, like "%.4g" of printf for 4: "0.1235", "1.235e+06".

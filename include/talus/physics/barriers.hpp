@@ -23,7 +23,7 @@ struct Barrier {
 
 /// Result of crossing the line of a barrier.
 enum class Meeting : std::uint8_t {
-  Over,    ///< the block's point at the top or above: its lowest point, as it touches the ground
+  Over,    ///< the block's lowest point at the top or above
   Caught,  ///< below the top, within the capacity
   Broken   ///< below the top, above the capacity: it goes on with the rest of its energy
 };
@@ -37,7 +37,7 @@ struct BarrierPassage {
 
 /// Result for a block that crosses the line of a barrier.
 ///
-/// @param clearance  of the block's point above the ground [m]; NaN counts as below the top
+/// @param clearance  of the block's lowest point above the ground [m]; NaN counts as below the top
 /// @param energy     translational [J]; NaN counts as within the capacity
 Meeting meeting(const Barrier& barrier, double clearance, double energy);
 

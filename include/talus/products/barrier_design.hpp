@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// Partial factors of ETAG 027 and UNI 11211-4. docs/barrier.md, "Design values".
+/// Partial factors of UNI 11211-4. docs/barrier.md, "Design values".
 struct DesignFactors {
   double trajectory = 1.10;  ///< gTr: 1.02 where the model was calibrated on the site, else 1.10 [-]
   double topography = 1.10;  ///< gDp: 1.02 for a good survey of the slope, else 1.10 [-]

@@ -11,7 +11,7 @@ struct Bounded {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
-/// Number of events in a return period, at least: a frequency is a sum, and its last bits must not decide.
+/// Events in a return period that count as one: a frequency is a sum, whose rounding must not decide.
 inline constexpr double kOnce = 1.0 - 1e-12;
 
 /// Sums of the weights of the trajectories that were counted.

@@ -65,8 +65,8 @@ class OutOfFold {
   LocalModel local_;
 };
 
-/// Amount of an effect at which its fit begins: the estimate of the score test, limited to between a little and four
-/// times what one would notice, the unit of both.
+/// Start of the fit of an effect, in units of what one would notice: the estimate of the score test, cut to 0.3 to 4,
+/// or to -2 to 4 where the amount may be negative.
 double first_amount(const Parameter& parameter, double estimate);
 
 /// Sets the amount of an effect. @param z  of all parameters of its fit, its own last

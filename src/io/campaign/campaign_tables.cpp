@@ -15,7 +15,7 @@ namespace talus::io {
 namespace {
 
 constexpr Bounds kHeight{"z", "m", "height above the sea", -500.0, 9000.0};
-constexpr Bounds kReleaseHeight{"release_height_m", "m", "of the centre above the terrain", 0.0, 500.0};
+constexpr Bounds kReleaseHeight{"release_height_m", "m", "of the block's lowest point above the terrain", 0.0, 500.0};
 constexpr Bounds kRadius{"release_radius_m", "m", "of the disc of release", 0.0, 1000.0};
 constexpr Bounds kVelocity{"vx", "m/s", "component of the velocity at the release", -200.0, 200.0};
 constexpr Bounds kAxis{"L1_m", "m", "length of an axis of the block", 1e-3, 100.0};

@@ -34,7 +34,7 @@ StagedPath::StagedPath(Kind kind, const fs::path& path, const std::string& exten
       hidden_(path.parent_path() / (hidden_prefix(path, extension) + std::to_string(getpid()) + extension)),
       owned_(kind == Kind::File) {  // a folder of this name may be another's: see make_folder
   if (hidden_.filename().string().size() > NAME_MAX)
-    throw InputError(path.parent_path().string() + ": the name of the output is too long for its temporary " +
+    throw InputError(path.string() + ": the name of the output is too long for its temporary " +
                      (kind == Kind::File ? "file" : "folder") + "; give a shorter one");
 }
 

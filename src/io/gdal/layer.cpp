@@ -113,9 +113,8 @@ void Layer::choose_layer() {
   for (OGRLayer* layer : layers) names.emplace_back(layer->GetName());
   const NamedLayer wanted = named_layer(path_);
   if (wanted.unread.starts_with("|layer"))
-    throw InputError(path_ + ": '" + wanted.unread +
-                     "' is not read: must be a whole number from 0, or one layer by its name: " +
-                     shell_word("|layername=" + names.front()));
+    throw InputError(path_ + ": '" + wanted.unread + "' is not read: a file is followed by one layer, such as " +
+                     shell_word("|layername=" + names.front()) + " or |layerid=0 (a whole number from 0)");
   if (!wanted.unread.empty())
     throw InputError(path_ + ": '" + wanted.unread +
                      "' is not read (a filter or a kind of geometry): export the features to a file of their own");
@@ -338,7 +337,8 @@ void Layer::add_valid(const OGRPolygon& polygon, Parts& parts, const std::string
   };
   if (mended) keep(keep, *mended);
   if (parts.polygons.size() == before)
-    throw InputError(where + ": polygon is invalid (" + reason + ") and has no area: draw it anew, or delete it");
+    throw InputError(where + ": polygon is invalid (" + reason +
+                     ") and no area is left when it is mended: draw it anew, or delete it");
   if (++mended_ <= 5) warnings_.push_back(where + ": polygon was invalid (" + reason + ") and was mended");
 }
 

@@ -267,9 +267,9 @@ BarrierLayer read_barriers(const std::string& path, const Terrain& terrain) {
   });
   reader.finish(out);
   warn_of_gaps<Barrier>(out.barriers, "barrier", "nothing is caught there", path, terrain, on_map, out.warnings);
-  warn_of_doubled_lines<Barrier>(out.barriers, "barrier",
-                                 "it takes its capacity from a block there more than once (unsafe). Delete one", path,
-                                 out.warnings);
+  warn_of_doubled_lines<Barrier>(
+      out.barriers, "barrier",
+      "it takes its capacity from a block there more than once (unsafe). Delete the doubled part", path, out.warnings);
   return out;
 }
 

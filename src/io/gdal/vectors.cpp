@@ -45,9 +45,10 @@ std::vector<FieldUse> columns_of(const Layer& layer, const std::string& path, co
     if (index < 0 && !given.field.empty())
       throw InputError(given.where + ": " + path + " has no field '" + given.field + "'" +
                        known_names(given.field, layer.field_names()) +
-                       (layer.names_are_utf8() ? ""
-                                               : "; names of its fields are not UTF-8: write its encoding, such as "
-                                                 "ISO-8859-1, into a file of the same name that ends in .cpg"));
+                       (layer.names_are_utf8()
+                            ? ""
+                            : "; some names of its fields are not UTF-8: of a Shapefile, write the encoding, such "
+                              "as ISO-8859-1, into a file of the same name that ends in .cpg"));
     mapped.emplace_back(name, index);
   }
   const auto taken = [&](int index) {  // by another name

@@ -237,7 +237,7 @@ std::string barrier_text(const BarrierReport& r) {
           "\n\ndesign values\n";
   for (const DesignRow& row : design_rows(r))
     text += "  " + cell(row.name, 8) + cell(with_digits(row.value, 4) + " " + row.unit, 14) + row.from + "\n";
-  text += "  The net needs SEL or MEL in its certificate, not both: docs/barrier.md, \"Design values\".\n";
+  text += "  Choose the net by MEL or by SEL, not by both: docs/barrier.md, \"Design values\".\n";
   text += std::string("\nprobability that a block") + (r.pieces() ? " or piece" : "") + " exceeds them, by " +
           r.values + " [95 %]\n";
   for (const Reliability& quantity : r.reliability) text += reliability_text(quantity);

@@ -278,8 +278,8 @@ std::optional<std::string> undesigned_note(const BarrierReport& r) {
   if (!height.where.empty())
     texts.push_back("above h_i on " + joined(height.where) + " (up to " + with_digits(height.highest, 3) + " m)");
   if (texts.empty()) return std::nullopt;
-  return "on stretches with too few crossings for a design, blocks come " + joined(texts) +
-         ": run more trajectories, or give these stretches the design of a like neighbour";
+  return "on stretches with too few crossings for a design, blocks are " + joined(texts) +
+         ": run more trajectories, or give these stretches the design of a similar neighbour";
 }
 
 }  // namespace talus::io

@@ -82,12 +82,13 @@ void read_instrument_bias(ScenarioSpec& spec, TableReader& top) {
     TableReader table(&item, "instrument_bias", top.file(), top.faults());
     InstrumentBias bias;
     bias.where = top.file() + ":" + std::to_string(item.line) + ": [[instrument_bias]]";
+    const std::size_t faults_before = top.faults().size();
     bias.screen = table.text("screen").value_or("");
     bias.speed = table.number("speed", kBias).value_or(0.0);
     bias.jump = table.number("jump", kBias).value_or(0.0);
     bias.spin = table.number("spin", kBias).value_or(0.0);
     table.finish();
-    if (!(bias.speed != 0.0 || bias.jump != 0.0 || bias.spin != 0.0))
+    if (bias.speed == 0.0 && bias.jump == 0.0 && bias.spin == 0.0 && top.faults().size() == faults_before)
       top.faults().push_back(bias.where + " does nothing, must give speed, jump or spin, other than 0");
     if (std::ranges::count(spec.instrument_bias, bias.screen, &InstrumentBias::screen) > 0)
       top.faults().push_back(bias.where + (bias.screen.empty() ? " without a screen" : " of screen " + bias.screen) +

@@ -132,7 +132,7 @@ void check_diameters(const Scenario& parts, const SourceLayer& layer, const std:
         "(or diameter_min and diameter_max) of the sources, in m; --field diameter=COLUMN where it has another "
         "name (its fields: " +
         (layer.fields.empty() ? "none" : shortened(joined(layer.fields), 300)) +
-        "); a volume V is one of (6 V / pi)^(1/3)");
+        "); a block of volume V has the diameter (6 V / pi)^(1/3)");
   }
 }
 

@@ -62,11 +62,8 @@ class SpecReader {
     const std::size_t faults_before = faults_.size();
     named_file(barriers, "file", spec_.barriers);
     read_barrier_lines(spec_, barriers, origin_);
-    barriers.finish();
-    if (barriers.value() != nullptr && barriers.find("file") == nullptr && spec_.barrier_lines.empty() &&
-        faults_.size() == faults_before)  // a misspelt key says more
-      faults_.push_back(file_ + ":" + std::to_string(barriers.value()->line) +
-                        ": [barriers] names no barrier, must have file = \"...\" or line = [...]");
+    const bool any = barriers.find("file") != nullptr || !spec_.barrier_lines.empty();
+    finish_barriers(barriers, any, faults_before, "file = \"...\" or line = [...]");
     read_frequency(spec_, top.table("frequency"), origin_);
     top.finish();
   }
@@ -96,17 +93,23 @@ class SpecReader {
     model.finish();
     read_effects(spec_, top.table("effects"), base_, origin_);
     TableReader barriers = top.table("barriers");
+    const std::size_t faults_before = faults_.size();
     read_barrier_lines(spec_, barriers, origin_);
-    if (barriers.value() != nullptr && barriers.find("file") == nullptr && barriers.find("line") == nullptr)
-      faults_.push_back(file_ + ":" + std::to_string(barriers.value()->line) +
-                        ": [barriers] names no barrier, must have file = \"...\" or line = [...]");
-    barriers.finish();
+    finish_barriers(barriers, !spec_.barrier_lines.empty(), faults_before, "line = [...]");
     read_instrument_bias(spec_, top);
     top.finish();
   }
 
  private:
   void given(const std::string& key) { spec_.origins[key] = origin_; }
+
+  /// Ends [barriers]. A fault where it names none and has no other fault, which would say more.
+  void finish_barriers(TableReader& barriers, bool any, std::size_t faults_before, const std::string& allowed) {
+    barriers.finish();
+    if (barriers.value() != nullptr && !any && faults_.size() == faults_before)
+      faults_.push_back(file_ + ":" + std::to_string(barriers.value()->line) +
+                        ": [barriers] names no barrier, must have " + allowed);
+  }
 
   /// Reads the included file first: the scenario's own keys override it.
   void read_include(TableReader& top) {

@@ -71,7 +71,7 @@ std::string axes_warning(const Scenario& scenario) {
          "]: only [effects.block-shape] reads the shape, and it is off: the blocks are spheres";
 }
 
-/// A line where a barrier is lower than the largest block: to the walk a block is a point, which it catches.
+/// A line where barriers are lower than the largest block: the run, to which blocks are points, catches too much there.
 std::string low_barrier_warning(const Scenario& scenario) {
   const double largest = diameters_of(scenario).high;
   std::vector<std::string> low;
@@ -79,7 +79,8 @@ std::string low_barrier_warning(const Scenario& scenario) {
     if (b.height > 0.0 && b.height < largest) low.push_back(b.id + " (" + text_of(b.height) + " m)");
   if (low.empty()) return {};
   return "barriers: " + listed(low) + ": lower than the largest block, " + text_of(largest) +
-         " m: the run takes blocks for points and catches more than a real one (unsafe)";
+         " m: the run catches a block whose lowest point is below the top, a real barrier only one whose centre is "
+         "(unsafe); give the real height less half the largest block. If that is done, all is well";
 }
 
 }  // namespace

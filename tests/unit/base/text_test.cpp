@@ -90,7 +90,7 @@ TEST(NumberIn, IsTheOneAtTheBeginning) {
 TEST(DecimalNumber, IsTheWholeText) {
   EXPECT_EQ(decimal_number("0.25"), 0.25);
   EXPECT_EQ(decimal_number("-1e+03"), -1000.0);
-  for (const char* text : {"", " 500", "500 ", "5.0.0", "0x1p9", "+5", "1e999", "none"})
+  for (const char* text : {"", " 500", "500 ", "5.0.0", "0x1p9", "+5", "1e999", "none", "inf", "nan"})
     EXPECT_EQ(decimal_number(text), std::nullopt) << text;
 }
 

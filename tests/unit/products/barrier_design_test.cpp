@@ -56,6 +56,9 @@ TEST(DesignBarrier, FreeboardIsHalfAMetreAtLeast) {
     return design_barrier(hundred(0.2, 0.0), {volume, 2700.0}, {}).freeboard;
   };
   EXPECT_EQ(freeboard(0.1), 0.5);
+  const BarrierDesign small = design_barrier(hundred(0.2, 0.0), {0.001, 2700.0}, {});
+  EXPECT_NEAR(small.top, 0.124070, 1e-6);  // a sphere of one litre
+  EXPECT_EQ(small.height, 0.5);
   EXPECT_NEAR(freeboard(8.0 * 3.14159265358979 / 6.0), 1.0, 1e-12);
 }
 

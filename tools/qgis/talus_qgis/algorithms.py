@@ -529,9 +529,10 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
                     words.append("--field=frequency=")  # the program takes one of the two
                     feedback.pushInfo(tr("The events per year are those that were given; a field frequency of the sources is "
                                          "not read."))
-                elif field.startswith("diameter") and parameters.get("DIAMETER") not in (None, ""):
-                    words.append(f"--field={field}=")
-        if "--field=diameter=" in words:
+        sizes = [field for fields in self.table.get("fields", {}).values() for field, _ in fields if field.startswith("diameter")]
+        given = parameters.get("DIAMETER") not in (None, "")
+        if sizes and given and not any(word.startswith("--field=diameter") for word in words):
+            words += [f"--field={field}=" for field in sizes]
             feedback.pushInfo(tr("The diameter is that which was given; fields of the sources with diameters are not read."))
         return words
 

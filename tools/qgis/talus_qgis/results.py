@@ -143,13 +143,18 @@ def _is_hazard_class(layer):
     return os.path.basename(layer.source()) == "hazard_class.tif"
 
 
-def _hillshade_of(folder):
-    """The DEM of a run as talus.qgs shows it, below all results; None where it is no file, or no longer one."""
+def _inputs_of(folder, role):
+    """The paths that a run has read as its `dem`, `sources` or `barriers`; none in a folder without a record."""
     try:
         with open(os.path.join(folder, "run.json"), encoding="utf-8") as file:
-            path = next(read["path"] for read in json.load(file)["inputs"] if read["role"] == "dem")
-    except (OSError, ValueError, KeyError, TypeError, StopIteration):
-        return None
+            return [read["path"] for read in json.load(file)["inputs"] if read["role"] == role]
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
+
+
+def _hillshade_of(folder):
+    """The DEM of a run as talus.qgs shows it, below all results; None where it is no file, or no longer one."""
+    path = next(iter(_inputs_of(folder, "dem")), "")
     if not os.path.isfile(path):
         return None
     layer = QgsRasterLayer(path, tr("title hillshade"))
@@ -166,16 +171,11 @@ def _hillshade_of(folder):
 
 def _outlines_of(folder):
     """The barriers and the sources of a run above its maps, as talus.qgs shows them; none of what is no file any more."""
-    try:
-        with open(os.path.join(folder, "run.json"), encoding="utf-8") as file:
-            inputs = json.load(file)["inputs"]
-        paths = [(role, title, read["path"]) for role, title in (("barriers", "Barriers of the run"), ("sources", "Sources of the run"))
-                 for read in inputs if read["role"] == role]
-    except (OSError, ValueError, KeyError, TypeError):
-        return []
+    inputs = [(title, path) for role, title in (("barriers", "Barriers of the run"), ("sources", "Sources of the run"))
+              for path in _inputs_of(folder, role)]
     above_maps = next((rank for rank, entry in enumerate(_entries()) if entry["file"].endswith(".tif")), 0) - 0.3
     outlines = []
-    for place, (role, title, path) in enumerate(paths):
+    for place, (title, path) in enumerate(inputs):
         layer = QgsVectorLayer(path, tr(title), "ogr") if os.path.isfile(path.split("|")[0]) else None
         if layer is None or not layer.isValid():
             continue

@@ -13,7 +13,7 @@ namespace talus {
 /// Measurements of a block at its first crossing of a screen. NaN: crossed, but not measured.
 struct Passage {
   double speed = kNotGiven;  ///< in space [m/s]
-  double jump = kNotGiven;   ///< vertical height of the centre above the terrain [m]
+  double jump = kNotGiven;   ///< of the block's lowest point above the terrain, vertical [m]
   double spin = kNotGiven;   ///< angular velocity [rad/s]
 };
 
@@ -30,7 +30,7 @@ struct MeasuredBlock {
   std::string id;
   std::uint32_t stream = 0;     ///< of its random numbers: stream_of_name(id), else blocks have the same random numbers
   double x = 0.0, y = 0.0;      ///< nominal place of release [m, local]
-  double release_height = 1.0;  ///< of the centre above the terrain [m]
+  double release_height = 1.0;  ///< of the block's lowest point above the terrain [m]
   double release_radius = 0.0;  ///< the place of release is uniform in a disc of this radius around (x, y) [m]
   Vec3 velocity = Vec3::Zero();  ///< at the release [m/s]
   double mass = 1.0;             ///< [kg], > 0
@@ -76,7 +76,7 @@ struct Campaign {
 std::vector<bool> fitting_rows(const Campaign& campaign);
 /// The blocks that are held out.
 std::vector<bool> holdout_rows(const Campaign& campaign);
-/// Number of the blocks that are among some rows.
+/// Number of the blocks that are asked for.
 std::size_t count_of_rows(const std::vector<bool>& rows);
 /// Whether all blocks of some rows were released and came to rest on the terrain, so that none is missing because it
 /// left. Trials that left went farther than these. Where blocks are missing, the others are those that happened to

@@ -14,7 +14,7 @@ struct DepositSource {
   Vec3 place = Vec3::Zero();       ///< its centre, on the terrain [m, local]
   double area = 0.0;               ///< of its ground, not in plan [m2], > 0
   bool point = false;              ///< blocks start exactly there, not anywhere in the cell
-  Range release_height{1.0, 1.0};  ///< of the centre of a block above the terrain [m]
+  Range release_height{1.0, 1.0};  ///< of a block's lowest point above the terrain [m]
   Vec3 velocity = Vec3::Zero();    ///< at the release [m/s]
 };
 

@@ -17,7 +17,7 @@ struct CrossingTable {
   };
   std::vector<double> speed;               ///< [m/s]
   std::vector<double> energy;              ///< translational [J]
-  std::vector<double> height;              ///< vertical, ground to centre [m]
+  std::vector<double> height;              ///< of the block's lowest point, vertical [m]
   std::vector<double> mass;                ///< [kg]
   std::vector<Eigen::Vector2d> places;     ///< in map coordinates [m]
   std::vector<std::string> source, block;  ///< as the table names them, one for each crossing
