@@ -1015,6 +1015,13 @@ class FromPython(Case):
         good, message = run.checkParameterValues(self.inputs(DIAMETER="1.2", TRAJECTORIES="5"), QgsProcessingContext())
         self.assertTrue(good, message)
 
+    def test_a_number_out_of_bounds_is_told_them(self):
+        for name, values, fault in (("run", self.inputs(DIAMETER=60.0), "DIAMETER: 60.0 must be 50 at most"),
+                                    ("calibrate", {"CAMPAIGN": ["campaign.toml"], "TRIALS": 10, "OUT": self.path("out")},
+                                     "TRIALS: 10 must be 20 at least")):
+            algorithm = QgsApplication.processingRegistry().createAlgorithmById("talus:" + name)
+            self.assertEqual(algorithm.checkParameterValues(values, QgsProcessingContext()), (False, fault))
+
     def test_a_misspelt_parameter_is_refused(self):
         """QGIS passes over it: the deformation coefficient would be the default one, without a word."""
         run = QgsApplication.processingRegistry().createAlgorithmById("talus:run")

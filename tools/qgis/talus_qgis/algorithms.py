@@ -2,6 +2,7 @@
 QGIS needs in addition: which inputs are layers, whose fields are picked, which files come out."""
 import difflib
 import glob
+import math
 import os
 import re
 import time
@@ -351,13 +352,20 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         return ""
 
     def _fault_of_numbers(self, parameters):
-        """What is wrong with a number that is given as text, as by qgis_process: QGIS would take "1,2" for 0."""
+        """What is wrong with a number: QGIS would take the text "1,2" for 0, and of one out of bounds it does not tell them."""
         for p in self.described():
-            value = parameters.get(key_of(p["name"]))
-            if p["type"] in ("number", "integer") and isinstance(value, str) and value and not _is_number(value):
-                with_point = value.replace(",", ".")
+            name, value = key_of(p["name"]), parameters.get(key_of(p["name"]))
+            if p["type"] not in ("number", "integer") or not isinstance(value, (str, int, float)) or value == "":
+                continue
+            if not _is_number(str(value)):
+                with_point = str(value).replace(",", ".")
                 return tr("{name}: '{value}' is no number: write {number}").format(
-                    name=key_of(p["name"]), value=value, number=with_point if _is_number(with_point) else "1.2")
+                    name=name, value=value, number=with_point if _is_number(with_point) else "1.2")
+            low, high = p["bounds"].get("low", -math.inf), p["bounds"].get("high", math.inf)
+            if float(value) < low - (1 if p["type"] == "integer" else 0):  # a whole number just below is "not set"
+                return tr("{name}: {value} must be {low} at least").format(name=name, value=value, low=low)
+            if float(value) > high:
+                return tr("{name}: {value} must be {high} at most").format(name=name, value=value, high=high)
         return ""
 
     def prepareAlgorithm(self, parameters, context, feedback):

@@ -70,7 +70,7 @@ LABELS = {
     "trials": ("Trajectories per block in the searches", "Sturzbahnen pro Block beim Suchen"),
     "starts": ("Searches from different starts", "Suchen von verschiedenen Startwerten aus"),
     "share": ("Parameters that all campaigns have in common", "Parameter, die alle Messkampagnen gemeinsam haben"),
-    "ground-parameters": ("Fitted ground (TOML), in place of the above", "Angepasster Boden (TOML), anstelle des obigen"),
+    "ground-parameters": ("Fitted ground (fitted.toml), instead of \"Ground\"", "Angepasster Boden (fitted.toml), anstelle von «Boden»"),
     "deformation-coefficient": ("Deformation coefficient c", "Deformationskoeffizient c"),
     "lanes": ("Trajectories in one instruction (lanes)", "Sturzbahnen in einem Befehl (Lanes)"),
     "parameters": ("Model from which the fit starts (TOML)", "Modell, von dem die Anpassung ausgeht (TOML)"),
@@ -203,6 +203,8 @@ GERMAN = {
     "Give the terrain, a line over it, where blocks start and their diameter, or the file of a profile.":
         "Das Gelände, eine Linie darüber, wo Blöcke starten und ihren Durchmesser angeben, oder die Datei eines Profils.",
     "{name}: '{value}' is no number: write {number}": "{name}: «{value}» ist keine Zahl: {number} schreiben",
+    "{name}: {value} must be {low} at least": "{name}: {value} muss mindestens {low} sein",
+    "{name}: {value} must be {high} at most": "{name}: {value} darf höchstens {high} sein",
     "The events per year are those that were given; a field frequency of the sources is not read.":
         "Es gilt die angegebene Zahl der Ereignisse pro Jahr; ein Feld frequency der Ausbruchgebiete wird nicht gelesen.",
     "{name}: no such parameter of {id}": "{name}: kein Parameter von {id}",
