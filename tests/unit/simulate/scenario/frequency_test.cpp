@@ -50,7 +50,7 @@ TEST(AnnualWeights, NumbersTooSmallToReckonWithAreRefused) {
   Scenario s = plane(30.0, {0, 0});
   s.frequency.total = 1e-160;  // its square is 0: the file of the hazard could not be read
   refused(s, "1e-100 at least");
-  s.frequency.total = 1e-320;  // that of a cell is 0
+  s.frequency.total = 5e-324;  // that of a cell is 0
   refused(s, "1e-100 at least");
   s.frequency.total = 1e-20;
   EXPECT_NEAR(per_year(s, 0), 0.5e-20, 1e-30);
