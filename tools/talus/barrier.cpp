@@ -230,9 +230,9 @@ std::optional<std::string> again_note(const BarrierReport& report, std::size_t b
   if (static_cast<double>(again) <= kFew * static_cast<double>(blocks)) return std::nullopt;
   return std::to_string(again) +
          " crossings on stretches are of blocks that crossed the line before, on another stretch (a winding line, or "
-         "several under one id): values, width and frequencies of the whole line are those of first crossings, as if "
-         "all "
-         "stopped there (unsafe where they do not); give each leg a screen of its own, or take the values by stretch";
+         "several under one id): values, width and frequencies of the whole line are those of first crossings, "
+         "as if all stopped there (unsafe where they do not); give each leg a screen of its own, or take the values by "
+         "stretch";
 }
 
 /// ", but in the laws and shares of the values": where crossings of sources with a frequency of 0 count all the same.

@@ -83,6 +83,16 @@ Missing lack_of(const BarrierReport& r, double line, Value value) {
   return lack;
 }
 
+/// A value of the design of a stretch; 0 where it has none.
+auto of_design(double BarrierDesign::*value) {
+  return [value](const StretchDesign& s) { return s.design ? (*s.design).*value : 0.0; };
+}
+
+/// The largest of a stretch without a design; 0 where it has one.
+auto without_design(double StretchDesign::*largest) {
+  return [largest](const StretchDesign& s) { return s.design ? 0.0 : s.*largest; };
+}
+
 std::string from_to(const Stretch& s) {
   return "from " + with_digits(s.from, 4) + " m to " + with_digits(s.to, 4) + " m";
 }
@@ -250,9 +260,8 @@ std::optional<std::string> gap_note(double without_height) {
 }
 
 std::optional<std::string> stretch_note(const BarrierReport& r) {
-  const Missing sel = lack_of(r, r.design.sel, [](const StretchDesign&s) { return s.design ? s.design->sel : 0.0; }),
-                height = lack_of(r, r.design.height,
-                                 [](const StretchDesign&s) { return s.design ? s.design->height : 0.0; });
+  const Missing sel = lack_of(r, r.design.sel, of_design(&BarrierDesign::sel));
+  const Missing height = lack_of(r, r.design.height, of_design(&BarrierDesign::height));
   const std::string energies = kilojoules(sel.highest) + " kJ", heights = with_digits(height.highest, 3) + " m";
   std::vector<std::string> texts;
   if (!sel.where.empty())
@@ -268,10 +277,8 @@ std::optional<std::string> stretch_note(const BarrierReport& r) {
 }
 
 std::optional<std::string> undesigned_note(const BarrierReport& r) {
-  const Missing energy =
-                    lack_of(r, r.design.sel, [](const StretchDesign&s) { return s.design ? 0.0 : s.largest_energy; }),
-                height = lack_of(r, r.design.height,
-                                 [](const StretchDesign&s) { return s.design ? 0.0 : s.largest_height; });
+  const Missing energy = lack_of(r, r.design.sel, without_design(&StretchDesign::largest_energy));
+  const Missing height = lack_of(r, r.design.height, without_design(&StretchDesign::largest_height));
   std::vector<std::string> texts;
   if (!energy.where.empty())
     texts.push_back("above SEL on " + joined(energy.where) + " (up to " + kilojoules(energy.highest) + " kJ)");

@@ -189,8 +189,8 @@ Markup standing_html(const RunFacts& run) {
   Markup html = "<h2>Barriers of the run</h2>\n<p>They stood in the way of the blocks, and each meeting counts"_html +
                 (run.pieces > 0.0 ? ", of blocks and of pieces" : "") +
                 ". Caught: below the top and within the capacity. Over: the block's lowest point at the top or above. "
-                "Broken: below the top, above the "
-                "capacity.</p>\n<table><tr><th>barrier</th><th>height</th><th>capacity</th><th>caught</th>"
+                "Broken: below the top, above the capacity.</p>\n"
+                "<table><tr><th>barrier</th><th>height</th><th>capacity</th><th>caught</th>"
                 "<th>over</th><th>broken</th></tr>\n";
   for (std::size_t i = 0; i < std::min(run.barriers.size(), kMostRows); ++i) {
     const StandingBarrier& b = run.barriers[i];

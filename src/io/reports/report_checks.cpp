@@ -343,9 +343,8 @@ std::vector<Check> checks_of(const CheckedRun& checked) {
 
 Markup checks_html(const std::vector<Check>& checks) {
   Markup html =
-      "<h2>Before you sign</h2>\n<p>What this run says of each point. Tick it when you have looked; the model cannot "
-      "do "
-      "that for you.</p>\n<table><tr><th></th><th>point</th><th>this run</th><th>why</th></tr>\n"_html;
+      "<h2>Before you sign</h2>\n<p>What this run says of each point. Tick it when you have looked; "
+      "the model cannot do that for you.</p>\n<table><tr><th></th><th>point</th><th>this run</th><th>why</th></tr>\n"_html;
   for (const Check& check : checks) {
     const Markup start = check.mark == Mark::Act    ? "<tr class='act'><td class='k'>\u2610 act</td><td>"_html
                          : check.mark == Mark::Look ? "<tr class='look'><td class='k'>\u2610 look</td><td>"_html
@@ -360,9 +359,8 @@ Markup checks_html(const std::vector<Check>& checks) {
 Markup assumptions_html(const CheckedRun& checked) {
   const auto [acting, idle, off] = effects_of(checked.run);
   Markup html =
-      "<h2>Assumptions</h2>\n<ul>\n<li>Impact model of PIERRE 2 (Mitchell and Hungr): stochastic rebounds of a sphere "
-      "on "
-      "rough ground. "_html;
+      "<h2>Assumptions</h2>\n<ul>\n<li>Impact model of PIERRE 2 (Mitchell and Hungr): "
+      "stochastic rebounds of a sphere on rough ground. "_html;
   html += acting.empty() ? std::string("No further effect acts.") : "Further effects: " + joined(acting) + ".";
   if (!idle.empty()) html += " Given, but does nothing here: " + joined(idle) + ".";
   html += "</li>\n<li>";

@@ -211,8 +211,7 @@ Markup objects_html(const ObjectsPart& part, bool pieces, const std::vector<std:
       "largest within the outline (safe for what does not stop a block: a yard, a road); at the first touch, for a "
       "wall, they are in objects.csv (entry), at a barrier in its table. The class is that of the object by these "
       "frequencies; where the classes at the bounds differ (in brackets), it is not decided: take more trajectories. "
-      "The "
-      "map \"Hazard class\" has that of each cell: the longer an object, "
+      "The map \"Hazard class\" has that of each cell: the longer an object, "
       "the more often it is hit, and its class may be higher than that of every cell. To compare parts of a road, cut "
       "it into sections of one length.</p>\n"_html;
   if (pieces) html += "<p>Blocks broke, and "_html + kHitsOfPieces + ".</p>\n";

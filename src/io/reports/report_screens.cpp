@@ -110,11 +110,10 @@ ScreensPart read_screens_part(const fs::path& folder) {
 Markup screens_html(const ScreensPart& part) {
   if (part.rows.empty()) return {};
   Markup html =
-      "<h2>At the screens</h2>\n<p>Every crossing counts, each block as much as any other; a block that rolls to and "
-      "fro "
-      "crosses several times. Energy is translational, jump height is from the terrain to the lowest point of the "
-      "block.</p>\n<div "
-      "class='wide'><table><tr><th>screen</th><th>quantity</th><th>crossings</th><th>blocks</th><th>of "
+      "<h2>At the screens</h2>\n<p>Every crossing counts, each block as much as any other; "
+      "a block that rolls to and fro crosses several times. Energy is translational, "
+      "jump height is from the terrain to the lowest point of the block.</p>\n"
+      "<div class='wide'><table><tr><th>screen</th><th>quantity</th><th>crossings</th><th>blocks</th><th>of "
       "all released</th><th>P50</th><th>P95</th><th>P99</th><th>largest</th></tr>\n"_html;
   for (const ScreensPart::Row& row : part.rows) html += row_html(row);
   html += "</table></div>\n";

@@ -43,9 +43,8 @@ std::string plane_warning(const std::vector<const ZoneSpec*>& grounds) {
       text += (text.empty() ? "" : ", ") + ("'" + zone->name + "' (" + zone->preset + ")");
   if (text.empty()) return text;
   return "ground " + text +
-         ": the preset is of the 2D model, psi_scale = 0: blocks are not turned sideways there, the endangered width "
-         "is "
-         "too small (unsafe): take a preset whose name ends in -3d, or give psi_scale";
+         ": the preset is of the 2D model, psi_scale = 0: blocks are not turned sideways there, "
+         "the endangered width is too small (unsafe): take a preset whose name ends in -3d, or give psi_scale";
 }
 
 /// A line if a factor on the radius lets an impact gain more energy than the factors of the paper do, 1 to 1.5: 14 %.
