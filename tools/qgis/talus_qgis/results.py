@@ -174,18 +174,16 @@ def _outlines_of(folder):
     inputs = [(title, path) for role, title in (("barriers", "Barriers of the run"), ("sources", "Sources of the run"))
               for path in _inputs_of(folder, role)]
     above_maps = next((rank for rank, entry in enumerate(_entries()) if entry["file"].endswith(".tif")), 0) - 0.3
+    looks = {QgsWkbTypes.PointGeometry: (QgsMarkerSymbol, {"color": "#333333", "size": "2"}),
+             QgsWkbTypes.LineGeometry: (QgsLineSymbol, {"color": "#333333", "line_width": "0.6"}),
+             QgsWkbTypes.PolygonGeometry: (QgsFillSymbol, {"style": "no", "outline_color": "#333333", "outline_width": "0.6"})}
     outlines = []
     for place, (title, path) in enumerate(inputs):
         layer = QgsVectorLayer(path, tr(title), "ogr") if os.path.isfile(path.split("|")[0]) else None
-        if layer is None or not layer.isValid():
+        if layer is None or not layer.isValid() or layer.geometryType() not in looks:
             continue
-        symbol = {QgsWkbTypes.PointGeometry: lambda: QgsMarkerSymbol.createSimple({"color": "#333333", "size": "2"}),
-                  QgsWkbTypes.LineGeometry: lambda: QgsLineSymbol.createSimple({"color": "#333333", "line_width": "0.6"}),
-                  QgsWkbTypes.PolygonGeometry: lambda: QgsFillSymbol.createSimple(
-                      {"style": "no", "outline_color": "#333333", "outline_width": "0.6"})}.get(layer.geometryType())
-        if symbol is None:
-            continue
-        layer.setRenderer(QgsSingleSymbolRenderer(symbol()))
+        kind, look = looks[layer.geometryType()]
+        layer.setRenderer(QgsSingleSymbolRenderer(kind.createSimple(look)))
         layer.setCustomProperty(RANK_MARK, above_maps + 0.1 * place)
         layer.setCustomProperty(TITLE_MARK, layer.name())
         outlines.append(layer)

@@ -243,7 +243,8 @@ TEST(IsRecorded, ExactlyAsManyAsWantedAndEvenlySpread) {
       }
 }
 
-/// Of 4e12 releases and 1e7 paths each 400 000th is recorded; their product is above 2^64.
+/// A plan of 4e12 releases that records 1e7 of their paths: every 400 000th. The product of the two numbers does not
+/// fit 64 bits.
 TEST(IsRecorded, LargestPlans) {
   Scenario s = plain();
   s.sources.assign(4000, s.sources.front());
