@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -89,14 +88,6 @@ std::size_t blocks_of(std::span<const LineCrossing> crossings) {
   return blocks.size();
 }
 
-/// What the blocks of a stratum sum up to.
-struct SumsOfStratum {
-  double sum = 0.0, squares = 0.0;
-  std::uint32_t blocks = 0;  // of all that were released
-
-  double overlap() const { return blocks > 1 ? std::max(0.0, sum * sum - squares) / (blocks - 1.0) : 0.0; }
-};
-
 }  // namespace
 
 double weighted_quantile(std::span<const double> values, std::span<const double> weights, double share) {
@@ -120,26 +111,30 @@ double weighted_quantile(std::span<const double> values, std::span<const double>
   return ascending.back();
 }
 
+double CrossingSummer::Stratum::overlap(std::uint32_t blocks) const {
+  return blocks > 1 ? std::max(0.0, sum * sum - squares) / (blocks - 1.0) : 0.0;
+}
+
+void CrossingSummer::add(const LineCrossing& crossing) {
+  const auto [block, first] = blocks_.try_emplace(crossing.block, 0.0);
+  const double before = block->second, w = crossing.weight;
+  const double squares = w * (2.0 * before + w);  // (before + w)^2 - before^2
+  block->second += w;
+  sums_.sum += w;
+  sums_.squares += squares;
+  sums_.largest = std::max(sums_.largest, block->second);
+  sums_.pieces = sums_.pieces || !first;
+  Stratum& stratum = strata_[crossing.stratum];
+  sums_.overlap -= stratum.overlap(crossing.stratum_blocks);
+  stratum.sum += w;
+  stratum.squares += squares;
+  sums_.overlap += stratum.overlap(crossing.stratum_blocks);
+}
+
 CrossingSums sums_of(std::span<const LineCrossing> crossings) {
-  CrossingSums sums;
-  std::unordered_map<std::size_t, double> blocks;
-  std::map<std::uint64_t, SumsOfStratum> strata;  // in order: their sum must not depend on the library
-  for (const LineCrossing& crossing : crossings) {
-    const auto [block, first] = blocks.try_emplace(crossing.block, 0.0);
-    const double before = block->second, w = crossing.weight;
-    const double squares = w * (2.0 * before + w);  // (before + w)^2 - before^2
-    block->second += w;
-    sums.sum += w;
-    sums.squares += squares;
-    sums.largest = std::max(sums.largest, block->second);
-    sums.pieces = sums.pieces || !first;
-    SumsOfStratum& stratum = strata[crossing.stratum];
-    stratum.sum += w;
-    stratum.squares += squares;
-    stratum.blocks = crossing.stratum_blocks;
-  }
-  for (const auto& [number, stratum] : strata) sums.overlap += stratum.overlap();
-  return sums;
+  CrossingSummer summer;
+  for (const LineCrossing& crossing : crossings) summer.add(crossing);
+  return summer.sums();
 }
 
 Bounded crossings_per_year(const CrossingSums& counted, const CrossingSums& line, const WeightScale& scale) {

@@ -437,6 +437,36 @@ class Weights(Case):
         self.assertAlmostEqual(sum(row["crossings_per_year"]["value"] for row in report["stretches"]) / total, 1.0, 9)
         return total
 
+    def expect_once_in(self, report, west, east):
+        """The speed that all as fast together reach once in so many years, summed again from the crossings."""
+        for row in report["once_in"]:
+            rate = 0.0
+            for speed, weight, _ in reversed(self.crossings(west, east)):
+                rate += weight
+                if rate * row["years"] >= 1.0:
+                    break
+            self.assertEqual(row["speed_ms"]["value"], speed)
+            self.assertLessEqual(row["speed_ms"]["low"], speed)
+            self.assertTrue(row["speed_ms"]["high"] is None or row["speed_ms"]["high"] >= speed)
+
+    def test_values_by_return_period(self):
+        self.run_well("run", self.scenario, "-o", self.path("out"))
+        report = self.report()
+        self.assertEqual([row["years"] for row in report["once_in"]], [30, 100, 300])
+        chosen = self.report("--return-periods", "4.93,0.01,0.493")
+        self.assertEqual([row["years"] for row in chosen["once_in"]], [0.01, 0.493, 4.93])
+        self.expect_once_in({"once_in": chosen["once_in"][1:]}, 10.0, 0.2)
+        self.assertEqual(chosen["once_in"][0]["energy_kj"], {"value": 0.0, "low": 0.0, "high": 0.0})
+        self.assertLess(chosen["once_in"][1]["energy_kj"]["value"], chosen["once_in"][2]["energy_kj"]["value"])
+        self.assertEqual(self.report("--return-periods", "100000")["once_in"][0]["energy_kj"]["high"], None)
+        text = self.run_well("barrier", self.path("out"), "--screen", "road", "--return-periods", "100000").stdout
+        self.assertRegex(text, "100\xa0000" r" years +energy [0-9.]+ \[[0-9.]+, \?\] kJ")
+        self.assertEqual(self.report("--unweighted")["once_in"], [])
+        for given, said in (("0", "--return-periods = 0: must be above 0"), ("2e6", "--return-periods = 2000000: must be")):
+            self.fails(2, said, arguments=["barrier", self.path("out"), "--return-periods", given])
+        self.fails(2, "--return-periods: every block counts alike, as --unweighted asks, must have annual frequencies",
+                   arguments=["barrier", self.path("out"), "--unweighted", "--return-periods", "30"])
+
     def without_a_fit(self, table, weighted):
         """Nine observed jumps are too few for a law. How often the simulated ones exceed the design does not hang on them."""
         few = self.report("--observed", self.write("few.csv", "\n".join(table.splitlines()[:10]) + "\n"))

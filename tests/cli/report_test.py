@@ -346,6 +346,17 @@ class Content(Report):
         for text, years in zip(found, bounds):
             self.assertAlmostEqual(float(re.sub(r"[ \xa0]", "", text)) / years, 1.0, 2)
 
+    def test_values_by_return_period(self):
+        """As `talus barrier` prints them."""
+        self.results(hazard=False)
+        said = self.run_well("barrier", self.path("out"), "--screen", "road", "--return-periods", "30,300000").stdout.replace("\xa0", " ")
+        rows = re.findall(r"(30|300 000) years +energy (.*\]) kJ +jump height (.*\]) m +speed (.*\]) m/s", said)
+        self.assertEqual(len(rows), 2)
+        self.assertIn("?]", rows[1][1])
+        page = self.page().text.replace("\xa0", " ")
+        for years, *values in rows:
+            self.assertRegex(page, r"\s*".join(map(re.escape, [f"{years} years", *values])))
+
     def test_a_screen_with_a_vertex_far_off_the_map(self):  # a point every 4 pixels up to there: 4 GB
         write_features(self.path("screens.gpkg"), "screens",
                        [(f"LINESTRING ({WEST} 1200100,{WEST + 300} 1200100,900000000 1200100)", ["road"])], [("id", ogr.OFTString)])

@@ -211,8 +211,8 @@ TEST(Frequency, OfARecord) {
 TEST(Escaping, EveryFieldOfEverySection) {
   const std::string& h = kHostile;
   ScreensPart screens{{{h, h, h, 1, 1, 1, 1, 1, 1, 2.0, std::vector<double>(30, 1.0)}}, h};
-  BarrierPart barrier{h,           h,           5.0, 3.0, {{h, h, h, 1.0}, {"h_i", "m", h, 2.0}, {"V", "m3", h, 1.0}},
-                      {{h, h, h}}, {{0, 9, 1}}, {h}};
+  BarrierPart barrier{h,           h,  5.0,         3.0, {{h, h, h, 1.0}, {"h_i", "m", h, 2.0}, {"V", "m3", h, 1.0}},
+                      {{h, h, h}}, {}, {{0, 9, 1}}, {h}};
   ObjectsPart objects{{h}, {{h, h, 0.1, 0.1, 0.2, {h}, {{1.0, 0.1}, {2.0, 0.05}}}}, 0, h, {h}};
   const std::optional<FitPart> fit = FitPart{h, h, "", {{h, h, 1.0, 0.5, 2.0, false}}, {{h, 1.0, 0.5}}, h, {h}};
   for (const Markup& html : {screens_html(screens), barriers_html({barrier}), objects_html(objects, false),
@@ -221,6 +221,11 @@ TEST(Escaping, EveryFieldOfEverySection) {
   EXPECT_THAT(barriers_html({barrier}).text(),
               HasSubstr("5 crossings (blocks and pieces) of 3 blocks; every block and"));
   barrier.blocks = 5.0;
+  EXPECT_THAT(barriers_html({barrier}).text(), Not(HasSubstr("once in [95 %]")));
+  barrier.once_in = {
+      {300.0, {29.0, 28.0, 31.0}, {0.0, 0.0, 0.25}, {7.3, 7.2, std::numeric_limits<double>::infinity()}}};
+  EXPECT_THAT(barriers_html({barrier}).text(),
+              HasSubstr("<td>300 years</td><td>29 [28, 31]</td><td>0 [0, 0.25]</td><td>7.3 [7.2, ?]</td>"));
   EXPECT_THAT(barriers_html({barrier}).text(), HasSubstr("5 blocks cross the line; every block counts"));
   EXPECT_THAT(page_of({h, h, h}, Markup() + h), HasSubstr("<title>Talus: &lt;script&gt;"));
 }

@@ -18,6 +18,8 @@
 #include "talus/io/reports/barrier_report.hpp"
 #include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/run_record.hpp"
+#include "talus/products/hazard_matrix.hpp"
+#include "talus/products/return_values.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/simulate/screens/screens.hpp"
 
@@ -35,6 +37,7 @@ struct BarrierOptions {
   double percentile = 95.0;                    // [%]
   std::optional<double> volume, density;       // [m^3], [kg/m^3]
   std::optional<double> containment, stretch;  // [%], longest [m]: kContained, kLongestStretch; not for a profile
+  std::vector<double> years;                   // return periods; empty: those of the hazard matrix
   std::uint64_t seed = 1;
   bool unweighted = false, quiet = false;
 };
@@ -50,7 +53,14 @@ constexpr Bounds kContainment{"--containment", "%", "share of the crossings that
                               1.0, 100.0};
 constexpr Bounds kStretch{"--stretch", "m", "longest stretch with a design of its own", 1.0, 1e6};
 constexpr Bounds kVolume{"--volume", "m3", "of the design block", 0.0, 65000.0, Bounds::AboveMin};
+constexpr Bounds kYears{"--return-periods", "years", "years in which the values are reached once", 0.0, 1e6,
+                        Bounds::AboveMin};
 constexpr Bounds kDensity{"--density", "kg/m3", "mass per volume of the rock", 500.0, 8000.0};
+
+void refuse_out_of(const Bounds& bounds, double value) {
+  if (const auto fault = talus::fault_of(bounds, value))
+    throw talus::InputError(std::string(bounds.key) + " = " + talus::text_of(value) + ": " + *fault);
+}
 
 /// Throws InputError if a number on the command line is out of bounds.
 void check_numbers(const BarrierOptions& o) {
@@ -66,9 +76,16 @@ void check_numbers(const BarrierOptions& o) {
       {kVolume, o.volume},
       {kDensity, o.density}};
   for (const auto& [bounds, value] : all)
-    if (value)
-      if (const auto fault = talus::fault_of(bounds, *value))
-        throw talus::InputError(std::string(bounds.key) + " = " + talus::text_of(*value) + ": " + *fault);
+    if (value) refuse_out_of(bounds, *value);
+  for (const double years : o.years) refuse_out_of(kYears, years);
+}
+
+/// Throws InputError if the crossings have no frequencies, from which alone return periods follow.
+void refuse_return_periods(const BarrierOptions& o, const Weighting& weighting) {
+  if (!o.years.empty() && !weighting.scale)
+    throw talus::InputError("--return-periods: every block counts " + weighting.text +
+                            ", must have annual frequencies: give the sources a field frequency, or run with "
+                            "--frequency; else leave it out");
 }
 
 /// Throws InputError if what only a line on a map has was asked for.
@@ -437,6 +454,22 @@ void add_crossings_per_year(BarrierReport& report, const Weighting& weighting) {
   report.per_year = weighting.per_year(weighting.line);
 }
 
+/// Adds the values that crossings reach once in some years.
+void add_return_periods(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
+                        const Weighting& weighting, std::vector<double> years) {
+  if (!weighting.scale) return;
+  if (years.empty()) years = talus::HazardMatrix{}.years;
+  std::ranges::sort(years);
+  const auto once_in = [&](const auto& value_of) {
+    return talus::values_once_in(years, crossings, value_of,
+                                 [&](const talus::CrossingSums& counted) { return *weighting.per_year(counted); });
+  };
+  const auto energy = once_in([](const talus::LineCrossing& c) { return 1e-3 * c.energy(); });
+  const auto height = once_in([](const talus::LineCrossing& c) { return c.height; });
+  const auto speed = once_in([](const talus::LineCrossing& c) { return c.speed; });
+  for (std::size_t i = 0; i < years.size(); ++i) report.once_in.push_back({years[i], energy[i], height[i], speed[i]});
+}
+
 int design(BarrierOptions o) {
   check_numbers(o);
   const RunSummary run = talus::io::read_run(o.folder);
@@ -466,6 +499,7 @@ int design(BarrierOptions o) {
   report.containment = 0.01 * o.containment.value_or(kContained);
   if (!run.of_profile) report.width = width_by_map(report, blocks, run);
   const std::vector<talus::LineCrossing> all = with_later_ones(blocks, crossings, screen_of(run, o));
+  refuse_return_periods(o, weighting);
   keep_falling(blocks, o, report, weighting);
   if (report.width) report.width->shortest = talus::shortest_stretch(blocks, report.containment);
   report.values = o.observed.empty() ? "the simulated crossings" : "the observed crossings of " + o.observed;
@@ -478,6 +512,7 @@ int design(BarrierOptions o) {
   exceedances.add("speed", "m/s", values.speed, {{"v_d", report.design.speed}});
   exceedances.add("energy", "kJ", kilojoules, {{"SEL", report.design.sel * 1e-3}, {"MEL", report.design.mel * 1e-3}});
 
+  add_return_periods(report, blocks, weighting, o.years);
   const std::string name = "barrier_" + talus::io::file_name_of(o.screen, screen_ids(run));
   catch_signals();  // from here on: all files or none
   const auto replaced = talus::io::write_barrier(o.folder, name, report, screen_of(run, o), run.crs_wkt);
@@ -528,6 +563,13 @@ void add_barrier(CLI::App& app, Action& action) {
   with(command->add_option("--frequency", o->frequency,
                            "another weighting (TOML: [frequency], [features]), as of talus hazard"),
        file_of({"toml"}));
+  with(command
+           ->add_option("--return-periods", o->years,
+                        "for the values that are reached once in so many years, with commas and no spaces: 30,100,300 "
+                        "(default)")
+           ->delimiter(',')
+           ->allow_extra_args(false),
+       number_of(kYears, "30,100,300"));
   command->add_flag("--unweighted", o->unweighted, "count every block alike, also where the sources have frequencies");
   add_quiet(*command, o->quiet);
   with(command->add_option("--seed", o->seed, "of the bootstrap: 1 (default)")->check(seed_number()),

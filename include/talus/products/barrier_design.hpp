@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "talus/products/hazard.hpp"
@@ -55,6 +56,22 @@ struct CrossingSums {
   double overlap = 0.0;  ///< as `WeightSums::overlap`
   double largest = 0.0;  ///< largest sum of a block
   bool pieces = false;   ///< a block has several crossings: of its pieces
+};
+
+/// Sums the weights of crossings one by one.
+class CrossingSummer {
+ public:
+  void add(const LineCrossing& crossing);
+  const CrossingSums& sums() const { return sums_; }
+
+ private:
+  struct Stratum {
+    double sum = 0.0, squares = 0.0;
+    double overlap(std::uint32_t blocks) const;
+  };
+  CrossingSums sums_;
+  std::unordered_map<std::size_t, double> blocks_;  // the weights of their crossings
+  std::unordered_map<std::uint64_t, Stratum> strata_;
 };
 CrossingSums sums_of(std::span<const LineCrossing> crossings);
 

@@ -89,6 +89,32 @@ std::string reliability_text(const Reliability& r) {
   return text;
 }
 
+std::string once_in_text(const BarrierReport& r) {
+  if (r.once_in.empty()) return "";
+  std::string text = "\nreached anywhere on the line once in so many years, without factors, by " +
+                     std::string(kWithFrequency) + " [95 %]\n";
+  for (const OnceIn& o : r.once_in)
+    text += "  " + cell(readable(o.years) + " years", 12) + cell("energy " + value_once_text(o.energy) + " kJ", 32) +
+            cell("jump height " + value_once_text(o.height) + " m", 34) + "speed " + value_once_text(o.speed) +
+            " m/s\n";
+  return text;
+}
+
+Json once_in_of(const BarrierReport& r) {
+  const auto bounded = [](const Bounded& b) {
+    Json json = bounded_of(b);
+    if (!std::isfinite(b.high)) json["high"] = nullptr;
+    return json;
+  };
+  Json rows = Json::array();
+  for (const OnceIn& o : r.once_in)
+    rows.push_back({{"years", o.years},
+                    {"energy_kj", bounded(o.energy)},
+                    {"jump_height_m", bounded(o.height)},
+                    {"speed_ms", bounded(o.speed)}});
+  return rows;
+}
+
 std::string stretch_text(const Stretch& s) {
   return with_digits(s.width(), 4) + " m, from " + with_digits(s.from, 4) + " m to " + with_digits(s.to, 4) +
          " m along the line (" + percent(s.share) + " of the crossings)";
@@ -220,6 +246,11 @@ std::optional<std::string> write_barrier(const std::filesystem::path& folder, co
   return replaced;
 }
 
+std::string value_once_text(const Bounded& b) {
+  return with_digits(b.value, 3) + " [" + with_digits(b.low, 3) + ", " +
+         (std::isfinite(b.high) ? with_digits(b.high, 3) : "?") + "]";
+}
+
 std::string frequency_text(const Reliability::Limit& l) {
   if (!l.by_frequency || !l.per_year) return "";
   std::string text = percent(*l.by_frequency) + " of " + kWithFrequency + ", ";
@@ -241,7 +272,7 @@ std::string barrier_text(const BarrierReport& r) {
   text += std::string("\nprobability that a block") + (r.pieces() ? " or piece" : "") + " exceeds them, by " +
           r.values + " [95 %]\n";
   for (const Reliability& quantity : r.reliability) text += reliability_text(quantity);
-  text += stretches_text(r);
+  text += once_in_text(r) + stretches_text(r);
   if (r.width) text += width_text(*r.width, r.containment);
   for (const std::string& note : r.notes) text += "\nnote: " + note + "\n";
   return text;
@@ -275,6 +306,7 @@ std::string barrier_json(const BarrierReport& r) {
   if (r.per_year) json["frequency_of"] = kWithFrequency;
   json["reliability"] = Json::array();
   for (const Reliability& quantity : r.reliability) json["reliability"].push_back(reliability_of(quantity));
+  json["once_in"] = once_in_of(r);
   json["longest_stretch_m"] = r.longest;
   json["stretches"] = stretches_of(r);
   json["containment"] = r.width ? width_of(*r.width, r.containment) : Json();

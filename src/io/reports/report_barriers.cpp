@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "svg.hpp"
 #include "talus/base/printable.hpp"
@@ -35,6 +36,11 @@ void read_limits(const Json& json, BarrierPart& part) {
     }
 }
 
+Bounded bounded_from(const Json& json) {
+  return {number_of(json, "value"), number_of(json, "low"),
+          number_of(json, "high", std::numeric_limits<double>::infinity())};
+}
+
 BarrierPart part_of(const Json& json) {
   BarrierPart part;
   part.screen = json.at("screen").get<std::string>();
@@ -45,6 +51,9 @@ BarrierPart part_of(const Json& json) {
     part.design.push_back(
         {one.at("name").get<std::string>(), one.value("unit", ""), one.value("from", ""), number_of(one, "value")});
   read_limits(json, part);
+  for (const Json& one : json.value("once_in", Json::array()))  // not in earlier designs
+    part.once_in.push_back({number_of(one, "years"), bounded_from(one.at("energy_kj")),
+                            bounded_from(one.at("jump_height_m")), bounded_from(one.at("speed_ms"))});
   for (const Json& one : json.value("stretches", Json::array())) {
     if (part.stretches.size() == kMostStretches) break;
     BarrierPart::Stretch stretch{number_of(one, "from_m"), number_of(one, "to_m"), number_of(one, "crossings")};
@@ -139,6 +148,19 @@ Markup limits_table(const BarrierPart& part) {
   return html + "</table>\n";
 }
 
+Markup once_in_table(const BarrierPart& part) {
+  if (part.once_in.empty()) return {};
+  Markup html =
+      "<table><tr><th>reached on the line once in [95 %]</th><th>energy, kJ</th><th>jump height, m</th><th>speed, "
+      "m/s</th></tr>\n"_html;
+  for (const OnceIn& o : part.once_in)
+    html += "<tr><td>"_html + readable(o.years) + " years</td><td>" + value_once_text(o.energy) + "</td><td>" +
+            value_once_text(o.height) + "</td><td>" + value_once_text(o.speed) + "</td></tr>\n";
+  return html +
+         "</table>\n<p class='note'>Of the simulated crossings, without factors. 0: crossings are rarer; ?: too few "
+         "trajectories for a bound.</p>\n";
+}
+
 Markup barrier_html(const BarrierPart& part) {
   const bool pieces = part.crossings > part.blocks;
   Markup html = "<h3>Barrier at "_html + part.screen + "</h3>\n<p>" + grouped(part.crossings) +
@@ -148,7 +170,7 @@ Markup barrier_html(const BarrierPart& part) {
   for (const BarrierPart::Value& value : part.design)
     html += "<tr><td>"_html + value.name + "</td><td class='n'>" + with_digits(value.value, 4) + " " + value.unit +
             "</td><td>" + value.from + "</td></tr>\n";
-  html += "</table>\n<figure>"_html + section_drawing(part) + "</figure>\n" + limits_table(part);
+  html += "</table>\n<figure>"_html + section_drawing(part) + "</figure>\n" + limits_table(part) + once_in_table(part);
   if (!part.stretches.empty())
     html +=
         "<figure>"_html + stretch_chart(part, true) + "<br>" + stretch_chart(part, false) +

@@ -5,6 +5,7 @@
 
 #include "markup.hpp"
 #include "report_facts.hpp"
+#include "talus/io/reports/barrier_report.hpp"
 
 namespace talus::io {
 
@@ -27,6 +28,7 @@ struct BarrierPart {
   double crossings = 0.0, blocks = 0.0;  ///< fewer blocks: pieces of them cross, too
   std::vector<Value> design;
   std::vector<Limit> limits;
+  std::vector<OnceIn> once_in;
   std::vector<Stretch> stretches;
   std::vector<std::string> notes;
   FrequencyFacts frequency{};  ///< of the design

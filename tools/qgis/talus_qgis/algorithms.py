@@ -66,7 +66,7 @@ ALGORITHMS = [
      "rasters": ["hazard_class", "annual_frequency"], "vectors": ["objects"],
      "files": {"table": "objects.csv", "curves": "objects_curves.csv"}, "record": "hazard.json"},
     {"id": "barrier", "command": "barrier", "help": "barrier", "order": ["folder", "screen"],
-     "advanced": {"observed", "frequency", "percentile", "containment", "stretch", "unweighted"}, "phases": [],
+     "advanced": {"observed", "frequency", "percentile", "containment", "stretch", "return-periods", "unweighted"}, "phases": [],
      "folder": "folder", "screen": "screen"},
     {"id": "profile", "command": "profile", "help": "profile", "phases": ["simulate", "write"],
      "order": ["dem", "line", "source-x", "diameter", "release-height", "preset", "screen-x", "trajectories"],

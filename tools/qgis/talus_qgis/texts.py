@@ -60,6 +60,7 @@ LABELS = {
     "density": ("Density of the rock", "Dichte des Gesteins"),
     "containment": ("Share of the crossings held by the width", "Anteil der Durchgänge in der Breite"),
     "stretch": ("Longest stretch with a design of its own", "Längster Abschnitt mit eigener Bemessung"),
+    "return-periods": ("Return periods", "Wiederkehrperioden"),
     "unweighted": ("Count every block alike", "Jeden Block gleich zählen"),
     "profile": ("Profile (TOML)", "Profil (TOML)"),
     "release-height": ("Height of release above the ground", "Starthöhe über dem Boden"),
@@ -374,6 +375,8 @@ GERMAN = {
         "Anteil der Durchgänge, den die Breite hält [%]: 99 (Vorgabe)",
     "longest stretch of the line with a design of its own [m]: 30 (default)":
         "längster Abschnitt der Linie mit eigener Bemessung [m]: 30 (Vorgabe)",
+    "for the values that are reached once in so many years, with commas and no spaces: 30,100,300 (default)":
+        "für die Werte, die einmal in so vielen Jahren erreicht werden, mit Kommas, ohne Leerzeichen: 30,100,300 (Vorgabe)",
     "count every block alike, also where the sources have frequencies":
         "jeden Block gleich zählen, auch wo die Ausbruchgebiete Häufigkeiten haben",
     "all processors where it is not given, of several processes one each; the results are the same":

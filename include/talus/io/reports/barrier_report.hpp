@@ -33,6 +33,12 @@ struct StretchRow {
   std::optional<Bounded> per_year;  ///< crossings [1/year]
 };
 
+/// What crossings of the line reach once in some years. In the units of the files.
+struct OnceIn {
+  double years;
+  Bounded energy, height, speed;  ///< [kJ], [m], [m/s]; 0: crossings are rarer; an infinite bound: not known
+};
+
 /// How wide a barrier must be.
 struct BarrierWidth {
   Stretch shortest{};            ///< shortest stretch of the line that holds `containment` of the crossings
@@ -59,6 +65,7 @@ struct BarrierReport {
   DesignFactors factors;
   BarrierDesign design{};
   std::vector<Reliability> reliability;
+  std::vector<OnceIn> once_in;  ///< none without frequencies
   double containment = 0.99;
   std::optional<BarrierWidth> width;  ///< nothing on a profile, which has no width
   double longest = 30.0;              ///< of a stretch [m]
@@ -71,6 +78,9 @@ struct BarrierReport {
 /// How often simulated crossings exceed a limit: "0.5 % of the simulated crossings, once in 310 years [250, 410]".
 /// Empty without frequencies.
 std::string frequency_text(const Reliability::Limit& limit);
+
+/// A value that is reached once in some years: "12 [8, 20]"; "?" for a bound that is not known.
+std::string value_once_text(const Bounded& value);
 
 /// The report as a page for people, as JSON and as a table of one row per value. Energies in kJ.
 std::string barrier_text(const BarrierReport& report);
