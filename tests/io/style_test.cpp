@@ -224,6 +224,8 @@ TEST(VectorStyle, ClassesOfTheRaster) {
                                       {StyledLayer::Trajectories, "velocity"},
                                       {StyledLayer::Screens, "energy"},
                                       {StyledLayer::Stretches, "energy"},
+                                      {StyledLayer::Crossings, "energy"},
+                                      {StyledLayer::Bins, "energy"},
                                       {StyledLayer::AreaObjects, "return_period_30"},
                                       {StyledLayer::LineObjects, "return_period_30"}}) {
     const Tree tree(CPLParseXMLString(style_of(layer).c_str()), CPLDestroyXMLNode);
@@ -233,7 +235,8 @@ TEST(VectorStyle, ClassesOfTheRaster) {
     std::vector<LegendClass> classes = classes_of(map_of(raster));
     const bool objects = layer == StyledLayer::AreaObjects || layer == StyledLayer::LineObjects;
     if (objects) classes.push_back({1e100, "no hit per year", "#bdbdbd"});  // which has no return period
-    if (layer == StyledLayer::Screens) classes.push_back({1e100, "no crossing", "#bdbdbd"});
+    if (layer == StyledLayer::Screens || layer == StyledLayer::Bins)
+      classes.push_back({1e100, "no crossing", "#bdbdbd"});
     if (layer == StyledLayer::Stretches) classes.push_back({1e100, "too few crossings for a design", "#bdbdbd"});
     std::size_t i = 0;
     double upper = 0.0;

@@ -129,6 +129,34 @@ class Project(unittest.TestCase):
             layer = QgsVectorLayer(os.path.join(self.out, name + ".gpkg"), name, "ogr")
             self.assertEqual(layer.renderer().type(), "graduatedSymbol", name)
 
+    def test_candidates_pits_and_profiles_have_their_style(self):
+        """Drawn in the colours of their classes; the ground of a profile is a line of one."""
+        dem, line = os.path.join(self.moved, "valley/dem.tif"), os.path.join(self.moved, "line.csv")
+        with open(line, "w", encoding="utf-8") as file:
+            file.write('id,wkt\np,"LINESTRING (2650200 1170500, 2651000 1170500)"\n')
+        for arguments in (["sources", "--dem", dem, "--slope", "45", "-o", os.path.join(self.moved, "sources.gpkg")],
+                          ["check", "--dem", dem, "--sources", os.path.join(self.moved, "valley/cliffs.shp"), "--diameter", "1",
+                           "--pits", os.path.join(self.moved, "pits.gpkg")],
+                          ["profile", "--dem", dem, "--line", line, "--source-x", "20", "--diameter", "1", "--screen-x", "300",
+                           "-o", os.path.join(self.moved, "profile")]):
+            subprocess.run([TALUS, *arguments, "-q"], check=True)
+        for file, layer, attribute, label in (("sources", "source_polygons", "slope_deg", "up to 45 deg"),
+                                              ("sources", "source_points", "slope_deg", "up to 45 deg"),
+                                              ("pits", "pits", "depth_m", "up to 0.03 m"),
+                                              ("profile/profile", "bins", "energy_kj_p95", "up to 30 kJ"),
+                                              ("profile/profile", "crossings", "energy_kj", "up to 30 kJ"),
+                                              ("profile/profile", "stops", "max_speed_ms", "up to 30 kJ")):
+            shown = QgsVectorLayer(os.path.join(self.moved, f"{file}.gpkg|layername={layer}"), layer, "ogr")
+            self.assertIn(attribute, shown.renderer().classAttribute())
+            classes = shown.renderer().ranges()
+            self.assertEqual(classes[0].label(), label)
+            image = renders([shown], shown.extent().buffered(5.0), shown.crs())
+            drawn = {image.pixelColor(x, y).name() for x in range(400) for y in range(400)}
+            least = 1 if layer == "crossings" else 2  # which lie above each other at their place
+            self.assertGreaterEqual(len(drawn & {one.symbol().color().name() for one in classes}), least, layer)
+        ground = QgsVectorLayer(os.path.join(self.moved, "profile/profile.gpkg|layername=profile"), "profile", "ogr")
+        self.assertEqual(ground.renderer().symbol().color().name(), "#232323")
+
     def test_lines_and_areas_in_one_layer_of_objects(self):
         """QGIS draws one kind of geometry per layer: each has its own, in symbols of its kind."""
         mixed, out = os.path.join(self.moved, "mixed.gpkg"), os.path.join(self.moved, "mixed")

@@ -15,6 +15,7 @@
 #include "talus/io/gdal/pit_points.hpp"
 #include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/run_record.hpp"
+#include "talus/io/results/vector_style.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/physics/trace.hpp"
 #include "talus/physics/tracer.hpp"
@@ -281,7 +282,8 @@ void write_pits(const CheckOptions& options, const LoadedScenario& loaded) {
   talus::io::OutputFile out(options.pits, ".gpkg", options.overwrite);
   for (const talus::io::InputFile& input : loaded.inputs) out.protect(input.path);
   catch_signals();
-  talus::io::write_pits(out.temporary(), loaded.scenario.surface.heights(), loaded.geo);
+  talus::io::write_pits(out.temporary(), loaded.scenario.surface.heights(), loaded.geo,
+                        talus::io::style_of(talus::io::StyledLayer::Pits));
   out.commit();
   if (!options.quiet) print("written: %s\n", options.pits.c_str());
 }

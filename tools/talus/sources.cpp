@@ -8,6 +8,7 @@
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_file.hpp"
 #include "talus/io/gdal/source_cells.hpp"
+#include "talus/io/results/vector_style.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/terrain/source_slope.hpp"
 
@@ -50,7 +51,11 @@ int find_sources(const SourcesOptions& options) {
   const std::string threshold =
       talus::with_digits(talus::degrees(slope), 4) + " deg" +
       (options.slope ? "" : " (the default for cells of " + talus::with_digits(cell, 4) + " m)");
-  const talus::io::SourceCells found = talus::io::write_source_cells(out.temporary(), terrain, slope, keep_going);
+  const talus::io::SourceCells found =
+      talus::io::write_source_cells(out.temporary(), terrain, slope,
+                                    {talus::io::style_of(talus::io::StyledLayer::SourceAreas),
+                                     talus::io::style_of(talus::io::StyledLayer::SourcePoints)},
+                                    keep_going);
   if (interrupted()) stop_interrupted();
   if (found.cells == 0)
     throw talus::InputError(options.dem + ": no cell is at least " + threshold + " steep, the steepest has " +

@@ -5,7 +5,8 @@
 
 namespace talus::io {
 
-void write_pits(const std::filesystem::path& file, const Raster<float>& heights, const GeoReference& geo) {
+void write_pits(const std::filesystem::path& file, const Raster<float>& heights, const GeoReference& geo,
+                const std::string& style) {
   start_gdal();
   const Grid& grid = heights.grid;
   const MapPlace place(geo, grid);
@@ -24,6 +25,7 @@ void write_pits(const std::filesystem::path& file, const Raster<float>& heights,
       feature->SetGeometry(&point);
       package.append(layer, *feature);
     }
+  package.set_style("pits", style);
   package.finish();
 }
 

@@ -139,7 +139,7 @@ void write_points(GeoPackage& file, const Cells& cells, const std::function<bool
 }  // namespace
 
 SourceCells write_source_cells(const std::filesystem::path& file, const Terrain& terrain, double slope,
-                               const std::function<bool()>& keep_going) {
+                               const SourceStyles& styles, const std::function<bool()>& keep_going) {
   start_gdal();
   const Cells cells(terrain, slope);
   SourceCells found;
@@ -149,6 +149,8 @@ SourceCells write_source_cells(const std::filesystem::path& file, const Terrain&
   GeoPackage package(file, terrain.geo);
   write_polygons(package, cells, *outlines->GetLayer(0), found, keep_going);
   write_points(package, cells, keep_going);
+  package.set_style(kPolygons, styles.polygons);
+  package.set_style(kPoints, styles.points);
   package.finish();
   return found;
 }

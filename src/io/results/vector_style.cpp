@@ -35,6 +35,14 @@ Legend legend_of(const std::string& name) {
   throw std::logic_error("no raster " + name);
 }
 
+Legend depth_legend() {
+  return {{0.03, 0.1, 0.3, 1.0, 3.0}, 1.0, "m", Palette::YlGnBu};
+}
+
+Legend slope_legend() {
+  return {{45.0, 50.0, 55.0, 60.0, 70.0}, 1.0, "deg", Palette::Viridis};
+}
+
 /// Objects with no hit per year have no return period and a class of their own; those off the map have no class.
 constexpr const char* kReturnPeriod =
     R"(CASE WHEN "trajectories" IS NULL THEN NULL ELSE coalesce("return_period", 1e99) END)";
@@ -62,6 +70,16 @@ Look look_of(StyledLayer layer) {
       return {Symbol::Area, kReturnPeriod, legend_of("return_period_<kJ>"), 0.4, 0.4, kNoHit};
     case StyledLayer::Stretches:
       return {Symbol::Line, "coalesce(\"mel_kj\", 1e99)", legend_of("energy"), 0.8, 0.8, kNoDesign};
+    case StyledLayer::Crossings:
+      return {Symbol::Point, "\"energy_kj\"", legend_of("energy"), 1.6, 2.8};
+    case StyledLayer::Bins:
+      return {Symbol::Line, "coalesce(\"energy_kj_p95\", 1e99)", legend_of("energy"), 1.8, 1.8, kNoCrossing};
+    case StyledLayer::Pits:
+      return {Symbol::Point, "\"depth_m\"", depth_legend(), 1.2, 2.4};
+    case StyledLayer::SourceAreas:
+      return {Symbol::Area, "\"slope_deg\"", slope_legend(), 0.2, 0.2};
+    case StyledLayer::SourcePoints:
+      return {Symbol::Point, "\"slope_deg\"", slope_legend(), 1.2, 1.2};
     case StyledLayer::LineObjects:
       return {Symbol::Line, kReturnPeriod, legend_of("return_period_<kJ>"), 1.8, 1.8, kNoHit};
   }

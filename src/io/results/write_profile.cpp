@@ -6,6 +6,7 @@
 #include "io/gdal/geopackage.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "talus/io/results/vector_style.hpp"
 #include "talus/io/results/write_vectors.hpp"
 
 namespace talus::io {
@@ -224,6 +225,10 @@ void ProfileWriter::finish(const ProfileResults& results) {
                      ++next;
                    }
                  });
+  s.file.set_style("bins", style_of(StyledLayer::Bins));
+  s.file.set_style("stops", style_of(StyledLayer::Stops));
+  if (s.crossings != nullptr) s.file.set_style("crossings", style_of(StyledLayer::Crossings));
+  s.file.set_style("profile", outline_style(1));
   s.file.finish();
   write_text(s.folder / "stops.csv", s.stops_csv);
   write_text(s.folder / "envelope.csv", envelope_csv(results.bins, profile.from(), released));

@@ -144,13 +144,13 @@ KEYS = {
     # titles of layers that are not in talus.qgs
     "title hillshade": ("Hillshade of the DEM", "Geländeschummerung"),
     "title vertices": ("Vertices of the paths", "Stützpunkte der Bahnen"),
-    "title pits": ("Pits and dammed cells", "Mulden und gestaute Zellen"),
-    "title crossings": ("Crossings at the places", "Durchgänge an den Stellen"),
-    "title stops": ("Ends of the blocks", "Enden der Blöcke"),
+    "title pits": ("Pits and dammed cells: depth", "Mulden und gestaute Zellen: Tiefe"),
+    "title crossings": ("Crossings at the places: energy", "Durchgänge an den Stellen: Energie"),
+    "title stops": ("Ends of the blocks: largest energy of the path", "Enden der Blöcke: grösste Energie der Bahn"),
     "title profile": ("Profile", "Profil"),
-    "title bins": ("Speed and jump along the profile", "Geschwindigkeit und Sprung entlang des Profils"),
-    "title source_polygons": ("Candidate sources", "Mögliche Ausbruchgebiete"),
-    "title source_points": ("Candidate source cells", "Mögliche Ausbruchzellen"),
+    "title bins": ("Along the profile: energy, P95", "Entlang des Profils: Energie, P95"),
+    "title source_polygons": ("Candidate sources: slope", "Mögliche Ausbruchgebiete: Neigung"),
+    "title source_points": ("Candidate source cells: slope", "Mögliche Ausbruchzellen: Neigung"),
 }
 
 GERMAN = {

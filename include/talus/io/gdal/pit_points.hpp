@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <string>
 
 #include "talus/io/origin/origin.hpp"
 #include "talus/terrain/raster.hpp"
@@ -10,7 +11,9 @@ namespace talus::io {
 /// GeoPackage: the centre of each cell, row by row from the north-west, with kind (pit or dammed), depth_m below the
 /// lowest of its eight (pit) or four (dammed) neighbours, and z. Without any the layer is empty.
 ///
+/// @param style  of the layer in QGIS
 /// Throws std::runtime_error, one line with the file and the cause.
-void write_pits(const std::filesystem::path& file, const Raster<float>& heights, const GeoReference& geo);
+void write_pits(const std::filesystem::path& file, const Raster<float>& heights, const GeoReference& geo,
+                const std::string& style);
 
 }  // namespace talus::io

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
 
 #include "talus/io/gdal/rasters.hpp"
 
@@ -12,6 +13,11 @@ struct SourceCells {
   std::uint64_t cells = 0, polygons = 0;
   double plan_area = 0.0, true_area = 0.0;  ///< [m2]; true area of a cell = plan area / cos(slope)
   double steepest = 0.0;                    ///< slope of the steepest cell of the DEM, source or not [rad]
+};
+
+/// The styles of the two layers in QGIS.
+struct SourceStyles {
+  std::string polygons, points;
 };
 
 /// Writes the cells that are at least as steep as `slope` (`horn_slope`) as candidate sources, in the system of the
@@ -25,6 +31,6 @@ struct SourceCells {
 /// @param keep_going  called from time to time; if it returns false the writing stops, and the file is worthless
 /// Throws std::runtime_error, one line with the file and the cause.
 SourceCells write_source_cells(const std::filesystem::path& file, const Terrain& terrain, double slope,
-                               const std::function<bool()>& keep_going);
+                               const SourceStyles& styles, const std::function<bool()>& keep_going);
 
 }  // namespace talus::io
