@@ -4,8 +4,8 @@
 #include <memory>
 #include <numeric>
 #include <optional>
-#include <set>
 
+#include "barrier_line.hpp"
 #include "commands.hpp"
 #include "crossing_weights.hpp"
 #include "project.hpp"
@@ -14,7 +14,6 @@
 #include "talus/io/files/file_name.hpp"
 #include "talus/io/files/staged_path.hpp"
 #include "talus/io/gdal/crossings_file.hpp"
-#include "talus/io/gdal/left_blocks.hpp"
 #include "talus/io/reports/barrier_report.hpp"
 #include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/run_record.hpp"
@@ -96,148 +95,6 @@ void refuse_width_of_profile(const RunSummary& run, const BarrierOptions& o) {
                               " is of a profile, where a barrier has no width and no stretches: leave it out");
 }
 
-std::vector<std::string> screen_ids(const RunSummary& run) {
-  std::vector<std::string> ids;
-  for (const talus::Screen& screen : run.screens) ids.push_back(screen.id);
-  return ids;
-}
-
-/// The id of the only screen of a run; empty if it has none. Throws InputError if it has several.
-std::string only_screen(const RunSummary& run) {
-  const std::vector<std::string> ids = screen_ids(run);
-  if (ids.size() > 1)
-    throw talus::InputError("--screen: must say at which of the screens of the run the barrier stands: " +
-                            talus::joined(ids));
-  return ids.empty() ? "" : ids.front();
-}
-
-const talus::Screen& screen_of(const RunSummary& run, const BarrierOptions& o) {
-  for (const talus::Screen& screen : run.screens)
-    if (screen.id == o.screen) return screen;
-  throw talus::InputError("--screen: the run has no screen '" + o.screen + "'" +
-                          talus::known_names(o.screen, screen_ids(run)));
-}
-
-/// How many blocks left the terrain and did not cross a screen; nothing where the run does not tell which ones left.
-std::optional<std::size_t> left_without_crossing(const RunSummary& run, const std::string& folder,
-                                                 const CrossingTable& crossings) {
-  if (run.pieces) return std::nullopt;                                                // a piece may have left alone
-  if (!(run.left > talus::io::kWarnedLeftShare * run.released)) return std::nullopt;  // too few for a note
-  const auto left = talus::io::blocks_that_left(folder);
-  if (!left || static_cast<double>(left->size()) != run.left) return std::nullopt;
-  std::set<std::string> crossed;
-  for (std::size_t i = 0; i < crossings.count; ++i) crossed.insert(crossings.source[i] + ',' + crossings.block[i]);
-  return std::ranges::count_if(*left, [&](const std::string& block) { return !crossed.contains(block); });
-}
-
-/// Share of the screen where the DEM has no height.
-double without_height(const RunSummary& run, const BarrierOptions& o) {
-  return run.without_height[static_cast<std::size_t>(&screen_of(run, o) - run.screens.data())];
-}
-
-/// The crossings of the run.
-CrossingTable simulated_crossings(const RunSummary& run, const BarrierOptions& o) {
-  const fs::path file = fs::path(o.folder) / "screens.csv";
-  if (run.screens.empty() || !fs::exists(file))
-    throw talus::InputError(o.folder +
-                            ": the run kept no crossings (no screens.csv), must have had --screens, or [screens] file "
-                            "in its scenario: add lines that blocks cross and run it again");
-  const auto gap = talus::io::gap_note(without_height(run, o));  // also says if there is no such screen
-  CrossingTable crossings = talus::io::read_crossings(file.string(), o.screen);
-  const auto in_summary =
-      talus::io::crossings_in_summary((fs::path(o.folder) / "screens_summary.csv").string(), o.screen);
-  if (in_summary && *in_summary != crossings.rows)
-    throw talus::InputError(file.string() + ": has " + std::to_string(crossings.rows) + " crossings of screen '" +
-                            o.screen + "', screens_summary.csv beside it says " + std::to_string(*in_summary) +
-                            ": must be as talus run has written it; copy it again, or run the scenario again");
-  if (crossings.count == 0) {
-    const auto left = talus::io::left_note(run, left_without_crossing(run, o.folder, crossings), 0);
-    throw talus::InputError(
-        file.string() + ": no block crosses screen '" + o.screen + "': " +
-        (gap || left ? "this does not say that a barrier is not needed there: " + (gap ? *gap : *left)
-                     : "a barrier is not needed there, or the line lies uphill of the sources, or barriers "
-                       "of the run catch the blocks before it, or the run has too few trajectories to say"));
-  }
-  for (const std::size_t told : {crossings.speed.size(), crossings.energy.size(), crossings.height.size(),
-                                 crossings.mass.size(), crossings.places.size()})
-    if (told != crossings.count)
-      throw talus::InputError(file.string() +
-                              ": has rows without speed, jump height, mass or place, must be as talus run "
-                              "has written it; run the scenario again");
-  for (const CrossingTable::Again& a : crossings.again)
-    if (std::isnan(a.speed + a.height + a.mass + a.place.x() + a.place.y()))
-      throw talus::InputError(file.string() +
-                              ": has rows of further crossings without speed, jump height, mass or place, must be as "
-                              "talus run has written it; run the scenario again");
-  return crossings;
-}
-
-/// Notes the rows of screens that the run does not have: a misspelt name would lose what was observed.
-void note_other_screens(const CrossingTable& observed, const RunSummary& run, const BarrierOptions& o,
-                        BarrierReport& report) {
-  const std::vector<std::string> ids = screen_ids(run);
-  for (const auto& [id, rows] : observed.others)
-    if (std::ranges::find(ids, id) == ids.end())
-      report.notes.push_back(o.observed + ": " + std::to_string(rows) + " rows are of screen '" + id +
-                             "', which the run does not have: they count nowhere. Is it " + talus::joined(ids) + "?");
-}
-
-CrossingTable observed_crossings(const BarrierOptions& o) {
-  CrossingTable crossings = talus::io::read_crossings(o.observed, o.screen);
-  if (crossings.count == 0)
-    throw talus::InputError(
-        o.observed + ": has no row of screen '" + o.screen + "'" +
-        (crossings.others.empty() ? "" : " (there are rows of '" + crossings.others.begin()->first + "')") +
-        ", must have one per observed block");
-  return crossings;
-}
-
-/// Notes rows that repeat a block: an inspector who gives all one id would lose the others.
-void note_repeated_rows(const CrossingTable& observed, const BarrierOptions& o, BarrierReport& report) {
-  if (observed.rows > observed.count)
-    report.notes.push_back(o.observed + ": " + std::to_string(observed.rows - observed.count) + " of " +
-                           std::to_string(observed.rows) +
-                           " rows repeat a block (its id, source and block): only its first crossing counts");
-}
-
-/// The blocks and pieces at the line with their weights: 0 for those that never fall.
-std::vector<talus::LineCrossing> crossings_of(const CrossingTable& table, const RunSummary& run,
-                                              const BarrierOptions& o, BarrierReport& report, Weighting& weighting) {
-  const talus::Screen& screen = screen_of(run, o);
-  std::vector<talus::LineCrossing> crossings;
-  for (std::size_t i = 0; i < table.count; ++i)
-    crossings.push_back({.speed = table.speed[i],
-                         .height = table.height[i],
-                         .mass = table.mass[i],
-                         .along = talus::place_along(screen, table.places[i]),
-                         .block = table.number[i],
-                         .piece = i});
-  weighting = weigh_crossings(crossings, table, {o.folder, o.frequency, o.unweighted});
-  report.weighting = weighting.text;
-  report.frequency = weighting.given;
-  if (weighting.scale) report.events_per_year = weighting.scale->total;
-  if (const std::string shares = talus::io::class_shares_text(weighting.given); !shares.empty())
-    report.notes.push_back(shares);
-  return crossings;
-}
-
-/// All crossings of what falls, with those of blocks and pieces that had crossed the line before.
-///
-/// @param first  their first crossings, weighed, also of what never falls
-std::vector<talus::LineCrossing> with_later_ones(std::vector<talus::LineCrossing> first, const CrossingTable& table,
-                                                 const talus::Screen& screen) {
-  for (const CrossingTable::Again& again : table.again) {
-    talus::LineCrossing crossing = first[again.first];
-    crossing.speed = again.speed;
-    crossing.height = again.height;
-    crossing.mass = again.mass;
-    crossing.along = talus::place_along(screen, again.place);
-    first.push_back(crossing);
-  }
-  std::erase_if(first, [](const auto& c) { return !(c.weight > 0.0); });
-  return first;
-}
-
 /// A note where much of what crosses a stretch has crossed another one before: a hairpin, several lines under one id.
 std::optional<std::string> again_note(const BarrierReport& report, std::size_t blocks) {
   constexpr double kFew = 0.01;  // of the crossings
@@ -273,7 +130,7 @@ void keep_falling(std::vector<talus::LineCrossing>& crossings, const BarrierOpti
   const std::size_t fewest = talus::fewest_for_percentile(0.01 * o.percentile);
   if (report.effective < static_cast<double>(fewest) - 1e-9)
     throw talus::InputError((fs::path(o.folder) / "screens.csv").string() + ": only " +
-                            std::to_string(crossings.size()) + " blocks cross screen '" + o.screen + "'" +
+                            std::to_string(crossings.size()) + " blocks cross screen '" + report.screen + "'" +
                             (weighting.scale ? ", which, weighted by frequency, count as " +
                                                    talus::with_digits(report.effective, 3) + " of equal weight"
                                              : "") +
@@ -386,9 +243,9 @@ std::optional<std::string> end_note(const talus::io::BarrierWidth& width, double
 
 /// @param all  crossings, also later ones of a block
 void add_stretches(BarrierReport& report, std::span<const talus::LineCrossing> all, std::size_t blocks,
-                   const talus::DesignBlockRule& rule, const RunSummary& run, const BarrierOptions& o) {
+                   const talus::DesignBlockRule& rule, const talus::Screen& screen) {
   std::vector<double> parts;
-  for (const auto& line : screen_of(run, o).lines) parts.push_back(talus::length_of(line));
+  for (const auto& line : screen.lines) parts.push_back(talus::length_of(line));
   if (const auto note = end_note(*report.width, std::accumulate(parts.begin(), parts.end(), 0.0)))
     report.notes.push_back(*note);
   for (const talus::StretchDesign& s :
@@ -423,8 +280,10 @@ std::optional<std::string> energy_note(const BarrierReport& report, std::span<co
 }
 
 /// @param all  crossings, also later ones of a block
-void add_design(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
-                std::span<const talus::LineCrossing> all, const RunSummary& run, const BarrierOptions& o) {
+/// @return     the block of the design
+talus::DesignBlockRule add_design(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
+                                  std::span<const talus::LineCrossing> all, const RunSummary& run,
+                                  const BarrierOptions& o) {
   report.factors = o.factors;
   report.factors.percentile = 0.01 * o.percentile;
   const talus::DesignBlockRule rule{o.volume, o.density.value_or(run.density), run.density};
@@ -438,7 +297,7 @@ void add_design(BarrierReport& report, std::span<const talus::LineCrossing> cros
   if (!o.volume)
     if (const auto note = energy_note(report, all)) report.notes.push_back(*note);
   report.longest = o.stretch.value_or(kLongestStretch);
-  if (!run.of_profile) add_stretches(report, all, crossings.size(), rule, run, o);
+  return rule;
 }
 
 /// The width, with that of the paper's rule. @param crossings  also of blocks that never fall: the rule is of all
@@ -470,52 +329,72 @@ void add_return_periods(BarrierReport& report, std::span<const talus::LineCrossi
   for (std::size_t i = 0; i < years.size(); ++i) report.once_in.push_back({years[i], energy[i], height[i], speed[i]});
 }
 
-int design(BarrierOptions o) {
-  check_numbers(o);
-  const RunSummary run = talus::io::read_run(o.folder);
-  refuse_width_of_profile(run, o);
-  if (o.screen.empty()) o.screen = only_screen(run);
-  talus::io::refuse_unwritable(o.folder);
-  const CrossingTable crossings = simulated_crossings(run, o);
-  const CrossingTable values = o.observed.empty() ? crossings : observed_crossings(o);
-  BarrierReport report;
-  Weighting weighting;
-  if (!o.observed.empty()) {
-    note_other_screens(values, run, o, report);
-    note_repeated_rows(values, o, report);
-  }
-  std::vector<talus::LineCrossing> blocks = crossings_of(crossings, run, o, report, weighting);
+/// Weighs the crossings. @return  what each counts, with notes on it and on the run
+Weighting add_weighting(std::vector<talus::LineCrossing>& crossings, const CrossingTable& table, const RunSummary& run,
+                        const BarrierOptions& o, BarrierReport& report) {
+  Weighting weighting = weigh_crossings(crossings, table, {o.folder, o.frequency, o.unweighted});
+  refuse_return_periods(o, weighting);
+  report.weighting = weighting.text;
+  report.frequency = weighting.given;
+  if (weighting.scale) report.events_per_year = weighting.scale->total;
+  if (const std::string shares = talus::io::class_shares_text(weighting.given); !shares.empty())
+    report.notes.push_back(shares);
   for (std::string& note : talus::io::notes_of_run(o.folder, {weighting.given, weighting.scale.has_value(), true}))
     report.notes.push_back(std::move(note));
-  report.without_height = without_height(run, o);
-  for (const auto& note :
-       {talus::io::gap_note(report.without_height),
-        talus::io::left_note(run, left_without_crossing(run, o.folder, crossings), crossings.blocks)})
+  for (const auto& note : {talus::io::gap_note(report.without_height),
+                           talus::io::left_note(run, left_without_crossing(run, o.folder, table), table.blocks)})
     if (note) report.notes.push_back(*note);
-  report.screen = o.screen;
+  return weighting;
+}
+
+/// Adds the laws of the values and how often they exceed the design.
+void add_reliability(BarrierReport& report, const CrossingTable& values, std::span<const talus::LineCrossing> crossings,
+                     const Weighting& weighting, std::uint64_t seed) {
+  std::vector<double> kilojoules = values.energy;
+  for (double& energy : kilojoules) energy *= 1e-3;
+  Exceedances exceedances(report, crossings, weighting, seed);
+  exceedances.add("jump height", "m", values.height, {{"h_i", report.design.height}});
+  exceedances.add("speed", "m/s", values.speed, {{"v_d", report.design.speed}});
+  exceedances.add("energy", "kJ", kilojoules, {{"SEL", report.design.sel * 1e-3}, {"MEL", report.design.mel * 1e-3}});
+}
+
+BarrierReport report_of(const CrossingTable& crossings, const RunSummary& run, const talus::Screen& screen,
+                        const BarrierOptions& o) {
+  BarrierReport report;
+  const CrossingTable values = o.observed.empty() ? crossings : observed_crossings(o.observed, screen.id);
+  if (!o.observed.empty()) report.notes = notes_on_observed(values, o.observed, run);
+  report.screen = screen.id;
+  report.without_height = without_height(run, screen);
+  std::vector<talus::LineCrossing> blocks = first_crossings(crossings, screen);
+  Weighting weighting = add_weighting(blocks, crossings, run, o, report);
   report.released = run.released;
   report.crossings = crossings.count;
   report.blocks = crossings.blocks;
   report.containment = 0.01 * o.containment.value_or(kContained);
   if (!run.of_profile) report.width = width_by_map(report, blocks, run);
-  const std::vector<talus::LineCrossing> all = with_later_ones(blocks, crossings, screen_of(run, o));
-  refuse_return_periods(o, weighting);
+  const std::vector<talus::LineCrossing> all = with_later_ones(blocks, crossings, screen);
   keep_falling(blocks, o, report, weighting);
   if (report.width) report.width->shortest = talus::shortest_stretch(blocks, report.containment);
   report.values = o.observed.empty() ? "the simulated crossings" : "the observed crossings of " + o.observed;
-  add_design(report, blocks, all, run, o);
+  const talus::DesignBlockRule rule = add_design(report, blocks, all, run, o);
+  if (!run.of_profile) add_stretches(report, all, blocks.size(), rule, screen);
   add_crossings_per_year(report, weighting);
-  std::vector<double> kilojoules = values.energy;
-  for (double& energy : kilojoules) energy *= 1e-3;
-  Exceedances exceedances(report, blocks, weighting, o.seed);
-  exceedances.add("jump height", "m", values.height, {{"h_i", report.design.height}});
-  exceedances.add("speed", "m/s", values.speed, {{"v_d", report.design.speed}});
-  exceedances.add("energy", "kJ", kilojoules, {{"SEL", report.design.sel * 1e-3}, {"MEL", report.design.mel * 1e-3}});
-
+  add_reliability(report, values, blocks, weighting, o.seed);
   add_return_periods(report, blocks, weighting, o.years);
-  const std::string name = "barrier_" + talus::io::file_name_of(o.screen, screen_ids(run));
+  return report;
+}
+
+int design(const BarrierOptions& o) {
+  check_numbers(o);
+  const RunSummary run = talus::io::read_run(o.folder);
+  refuse_width_of_profile(run, o);
+  const talus::Screen& screen = screen_of(run, o.folder, o.screen);
+  talus::io::refuse_unwritable(o.folder);
+  const BarrierReport report = report_of(simulated_crossings(run, o.folder, screen), run, screen, o);
+
+  const std::string name = "barrier_" + talus::io::file_name_of(screen.id, screen_ids(run));
   catch_signals();  // from here on: all files or none
-  const auto replaced = talus::io::write_barrier(o.folder, name, report, screen_of(run, o), run.crs_wkt);
+  const auto replaced = talus::io::write_barrier(o.folder, name, report, screen, run.crs_wkt);
   if (!run.of_profile) refresh_project(o.folder);  // a profile has no maps
   if (replaced && !o.quiet) say("", *replaced);
   if (o.quiet) return 0;
