@@ -120,7 +120,7 @@ class Input(Case):
         scenario = self.scenario("trajectories = 1")
         for command in (["check", scenario], ["run", scenario, "-o", self.path("c")]):
             done = self.run_well(*command)
-            self.assertIn("energies and jumps may be too low (unsafe): c = 0.25", done.stdout + done.stderr)
+            self.assertIn("energies, jumps, run-out and hits may be too low (unsafe): c = 0.25", done.stdout + done.stderr)
         done = self.run_well("check", scenario, "--deformation-coefficient", "0.15")
         self.assertNotIn("c = ", done.stdout)
 

@@ -690,10 +690,17 @@ class Hazard(OneThread, KeptRuns, Case):
         rows = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         table = {row["object"]: row for row in self.read_table("out/objects.csv")}
         for name in ("gap", "edge", "far"):  # blocks touch the rim of the gap: it had a return period
-            self.assertEqual([key for key, value in rows[name].items() if value], ["object", "name"], name)
-            self.assertEqual([key for key, value in table[name].items() if value], ["object", "name"], name)
+            self.assertEqual([key for key, value in rows[name].items() if value], ["object", "name", "share_without_height"], name)
+            self.assertEqual([key for key, value in table[name].items() if value], ["object", "name", "share_without_height"], name)
             self.assertIsNone(rows[name]["frequency"])
-        self.assertIsNotNone(rows["mostly off"]["frequency"])
+        for name, share, bounded in (("well", 0.0, True), ("rim", 0.25, False), ("mostly off", 0.95, False)):
+            self.assertAlmostEqual(rows[name]["share_without_height"], share, 2)
+            self.assertIsNotNone(rows[name]["frequency"])
+            for column in ("frequency_upper", "frequency_30_upper", "energy_T100_upper", "hazard_class_upper"):
+                self.assertEqual((rows[name][column] is not None, table[name][column] != ""), (bounded, bounded), (name, column))
+            curve = [row for row in self.read_table("out/objects_curves.csv") if row["object"] == name]
+            self.assertTrue(curve and all((row["upper"] != "") == bounded for row in curve), name)
+        self.assertRegex(done.stderr, r"talus: mostly off: hit .* at least per year\); the 95 %")
         write_features(self.path("far.gpkg"), "o", [(box(5000, 0, 9, 9), ["far"])], [("name", ogr.OFTString)])
         self.fails(2, "far.gpkg: lies wholly off the DEM: its features reach over east 2605000 to 2605009",
                    "the DEM over east 2600000 to 2600300", "is the coordinate system of the layer the right one?",

@@ -644,7 +644,7 @@ class Faults(OnASlope):
             notes = [line for line in done.stderr.splitlines() if line.startswith("talus: note: ")]
             self.assertEqual(len(notes), told is not None)
             if told:
-                self.assertIn(f"energies and jumps may be too low (unsafe): c = {told} ", notes[0])
+                self.assertIn(f"energies, jumps, run-out and hits may be too low (unsafe): c = {told} ", notes[0])
                 self.assertIn("run with --deformation-coefficient 0.15 as well", notes[0])
         self.scenario("x = 20")
         self.assertEqual(self.profile("--trajectories", "5", "--overwrite").stderr, "")

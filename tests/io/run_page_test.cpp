@@ -213,7 +213,7 @@ TEST(Escaping, EveryFieldOfEverySection) {
   ScreensPart screens{{{h, h, h, 1, 1, 1, 1, 1, 1, 2.0, std::vector<double>(30, 1.0)}}, h};
   BarrierPart barrier{h,           h,  5.0,         3.0, {{h, h, h, 1.0}, {"h_i", "m", h, 2.0}, {"V", "m3", h, 1.0}},
                       {{h, h, h}}, {}, {{0, 9, 1}}, {h}};
-  ObjectsPart objects{{h}, {{h, h, 0.1, 0.1, 0.2, {h}, {{1.0, 0.1}, {2.0, 0.05}}}}, 0, h, {h}};
+  ObjectsPart objects{{h}, {{h, h, 0.1, 0.1, 0.2, 0.0, {h}, {{1.0, 0.1}, {2.0, 0.05}}}}, 0, h, {h}};
   const std::optional<FitPart> fit = FitPart{h, h, "", {{h, h, 1.0, 0.5, 2.0, false}}, {{h, 1.0, 0.5}}, h, {h}};
   for (const Markup& html : {screens_html(screens), barriers_html({barrier}), objects_html(objects, false),
                              fit_html(fit), checks_html({{Check::Mark::Act, h, h, h}})})
@@ -228,6 +228,26 @@ TEST(Escaping, EveryFieldOfEverySection) {
               HasSubstr("<td>300 years</td><td>29 [28, 31]</td><td>0 [0, 0.25]</td><td>7.3 [7.2, ?]</td>"));
   EXPECT_THAT(barriers_html({barrier}).text(), HasSubstr("5 blocks cross the line; every block counts"));
   EXPECT_THAT(page_of({h, h, h}, Markup() + h), HasSubstr("<title>Talus: &lt;script&gt;"));
+}
+
+/// Of an object whose larger part is not assessed nothing is told that looks safe.
+TEST(ObjectsTable, SaysWhatIsNotAssessed) {
+  ObjectsPart::Object object{"km 1.6", "cliff", 0.0, 0.0, std::nullopt, 0.67, {"not known"}};
+  object.hazard_class = object.lowest_class = 0;
+  const auto text = [&] {
+    ObjectsPart part;
+    part.thresholds = {"30"};
+    part.objects = {object};
+    return objects_html(part, false, {"none", "low", "high"}).text();
+  };
+  EXPECT_THAT(text(), HasSubstr("<tr><td>km 1.6 (67 % of it not assessed: the DEM has no height there)</td>"
+                                "<td class='n'>at least 0 [0, ?]</td><td class='n'>not known</td>"));
+  EXPECT_THAT(text(), HasSubstr("<td>none or higher</td>"));
+  object.frequency = 0.1, object.low = 0.05;
+  EXPECT_THAT(text(), HasSubstr("at least 0.1 [0.05, ?]</td><td class='n'>at most 10</td>"));
+  object.high = 0.2, object.highest_class = 1;
+  EXPECT_THAT(text(),
+              HasSubstr("<tr><td>km 1.6</td><td class='n'>0.1 [0.05, 0.2]</td><td class='n'>10 [5 to 20]</td>"));
 }
 
 TEST(Escaping, ValuesOfAttributesOfMaps) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <numeric>
@@ -138,28 +139,23 @@ void keep_falling(std::vector<talus::LineCrossing>& crossings, const BarrierOpti
                             talus::text_of(o.percentile) + ": run more trajectories, or give a lower --percentile");
 }
 
-/// How often the crossings that `exceeds` accepts come: their share by weight, and per year.
-template <class Exceeds>
-void add_frequency(talus::io::Reliability::Limit& limit, std::span<const talus::LineCrossing> crossings,
-                   const Weighting& weighting, Exceeds exceeds) {
-  std::vector<talus::LineCrossing> above;
-  std::ranges::copy_if(crossings, std::back_inserter(above), [&](const auto& c) { return exceeds(c, limit.value); });
-  const talus::CrossingSums counted = talus::sums_of(above);
-  limit.by_frequency = counted.sum / weighting.line.sum;
-  limit.per_year = weighting.per_year(counted);
-}
+/// A quantity of crossings, in its unit.
+struct CrossingQuantity {
+  std::string name, unit;
+  std::function<double(const talus::LineCrossing&)> of;
+};
 
-/// Adds to each design value of a quantity how often a simulated block exceeds it.
-void add_frequencies(talus::io::Reliability& r, std::span<const talus::LineCrossing> crossings,
-                     const Weighting& weighting) {
-  using Crossing = talus::LineCrossing;
-  for (talus::io::Reliability::Limit& limit : r.limits)
-    if (r.unit == "m")
-      add_frequency(limit, crossings, weighting, [](const Crossing& c, double h) { return c.height > h; });
-    else if (r.unit == "m/s")
-      add_frequency(limit, crossings, weighting, [](const Crossing& c, double v) { return c.speed > v; });
-    else
-      add_frequency(limit, crossings, weighting, [](const Crossing& c, double kj) { return c.energy() > 1e3 * kj; });
+/// Adds to each design value of a quantity how often a simulated block exceeds it: its share by weight, and per year.
+void add_frequencies(talus::io::Reliability& r, const CrossingQuantity& quantity,
+                     std::span<const talus::LineCrossing> crossings, const Weighting& weighting) {
+  for (talus::io::Reliability::Limit& limit : r.limits) {
+    std::vector<talus::LineCrossing> above;
+    std::ranges::copy_if(crossings, std::back_inserter(above),
+                         [&](const auto& c) { return quantity.of(c) > limit.value; });
+    const talus::CrossingSums counted = talus::sums_of(above);
+    limit.by_frequency = counted.sum / weighting.line.sum;
+    limit.per_year = weighting.per_year(counted);
+  }
 }
 
 /// Why a quantity has no fit; empty if it can have one.
@@ -189,15 +185,15 @@ class Exceedances {
 
   /// Adds one quantity: the fit of its values and, where the sources have frequencies, how often simulated blocks
   /// exceed its design values. A note if there are too few values for a fit.
-  void add(const std::string& quantity, const std::string& unit, const std::vector<double>& values,
+  void add(const CrossingQuantity& quantity, const std::vector<double>& values,
            const std::vector<std::pair<std::string, double>>& limits) {
-    const std::string lack = lack_of_fit(report_.values, quantity, values);
-    talus::io::Reliability r{quantity, unit, {}, {}};
+    const std::string lack = lack_of_fit(report_.values, quantity.name, values);
+    talus::io::Reliability r{quantity.name, quantity.unit, {}, {}};
     if (lack.empty()) r.fit = talus::fit_weibull(values, how_);
     for (const auto& [name, limit] : limits)
       r.limits.push_back(
           {name, limit, lack.empty() ? talus::exceedance(r.fit, values, limit) : talus::Exceedance{}, {}, {}});
-    if (weighting_.scale) add_frequencies(r, crossings_, weighting_);
+    if (weighting_.scale) add_frequencies(r, quantity, crossings_, weighting_);
     if (lack.empty())
       report_.reliability.push_back(std::move(r));
     else
@@ -241,6 +237,18 @@ std::optional<std::string> end_note(const talus::io::BarrierWidth& width, double
          "a longer one and run again";
 }
 
+/// A line where a design asks for more than any net has.
+std::optional<std::string> unlikely_note(const BarrierReport& report) {
+  double mel = report.design.mel, height = report.design.height;
+  for (const talus::io::StretchRow& row : report.stretches)
+    if (const auto& design = row.values.design)
+      mel = std::max(mel, design->mel), height = std::max(height, design->height);
+  if (!(mel > talus::kLargestNetCapacity || height > talus::kHighestNet)) return std::nullopt;
+  return "up to " + talus::with_digits(1e-3 * mel, 4) + " kJ (MEL) and " + talus::with_digits(height, 3) +
+         " m (h_i) are needed, more than any net has (" + talus::text_of(1e-3 * talus::kLargestNetCapacity) + " kJ, " +
+         talus::text_of(talus::kHighestNet) + " m): place the line elsewhere, or take a dam, a gallery or several nets";
+}
+
 /// @param all  crossings, also later ones of a block
 void add_stretches(BarrierReport& report, std::span<const talus::LineCrossing> all, std::size_t blocks,
                    const talus::DesignBlockRule& rule, const talus::Screen& screen) {
@@ -276,6 +284,28 @@ std::optional<std::string> energy_note(const BarrierReport& report, std::span<co
   return "the largest block at the speed of the percentile has " + talus::with_digits(1e-3 * energy, 4) +
          " kJ, more than any crossing of the run (" + talus::with_digits(1e-3 * largest, 4) +
          " kJ): this mass and this speed come in no one fall. Where the block of the design is known, give it by "
+         "--volume";
+}
+
+/// A line where that is so on stretches: their largest block at the speed of the percentile there.
+std::optional<std::string> stretch_energy_note(const BarrierReport& report) {
+  std::size_t designed = 0, above = 0;
+  double most = 1.0;
+  for (const talus::io::StretchRow& row : report.stretches) {
+    const talus::StretchDesign& s = row.values;
+    if (!s.design) continue;
+    ++designed;
+    const double speed = s.design->speed_percentile, energy = 0.5 * s.block.volume * s.block.density * speed * speed;
+    if (!(energy > s.largest_energy)) continue;
+    ++above;
+    most = std::max(most, energy / s.largest_energy);
+  }
+  if (above == 0) return std::nullopt;
+  return "on " + std::to_string(above) + " of " + std::to_string(designed) +
+         " stretches with a design, their largest block at the speed of the percentile has more energy than any "
+         "crossing there (up to " +
+         talus::with_digits(most, 2) +
+         " times): this mass and this speed come in no one fall. Where the block of the design is known, give it by "
          "--volume";
 }
 
@@ -347,15 +377,25 @@ Weighting add_weighting(std::vector<talus::LineCrossing>& crossings, const Cross
   return weighting;
 }
 
-/// Adds the laws of the values and how often they exceed the design.
-void add_reliability(BarrierReport& report, const CrossingTable& values, std::span<const talus::LineCrossing> crossings,
-                     const Weighting& weighting, std::uint64_t seed) {
-  std::vector<double> kilojoules = values.energy;
-  for (double& energy : kilojoules) energy *= 1e-3;
-  Exceedances exceedances(report, crossings, weighting, seed);
-  exceedances.add("jump height", "m", values.height, {{"h_i", report.design.height}});
-  exceedances.add("speed", "m/s", values.speed, {{"v_d", report.design.speed}});
-  exceedances.add("energy", "kJ", kilojoules, {{"SEL", report.design.sel * 1e-3}, {"MEL", report.design.mel * 1e-3}});
+/// Adds the laws of the values and how often they exceed the design. The centre of a block, which passes the net where
+/// it is above its top, is half the block higher than the jump: of observed crossings only where all have a mass.
+///
+/// @param density  of the rock [kg/m^3]
+void add_reliability(Exceedances exceedances, const CrossingTable& values, const talus::BarrierDesign& design,
+                     double density) {
+  using Crossing = talus::LineCrossing;
+  const auto radius = [density](double mass) { return 0.5 * talus::diameter_of(mass / density); };
+  std::vector<double> kilojoules, centres;
+  for (const double energy : values.energy) kilojoules.push_back(1e-3 * energy);
+  if (values.mass.size() == values.count && values.height.size() == values.count)
+    for (std::size_t i = 0; i < values.mass.size(); ++i) centres.push_back(values.height[i] + radius(values.mass[i]));
+  exceedances.add({"jump height", "m", &Crossing::height}, values.height, {{"h_i", design.height}});
+  if (!centres.empty())
+    exceedances.add({talus::io::kCentre, "m", [&](const Crossing& c) { return c.height + radius(c.mass); }}, centres,
+                    {{"h_i", design.height}});
+  exceedances.add({"speed", "m/s", &Crossing::speed}, values.speed, {{"v_d", design.speed}});
+  exceedances.add({"energy", "kJ", [](const Crossing& c) { return 1e-3 * c.energy(); }}, kilojoules,
+                  {{"SEL", design.sel * 1e-3}, {"MEL", design.mel * 1e-3}});
 }
 
 BarrierReport report_of(const CrossingTable& crossings, const RunSummary& run, const talus::Screen& screen,
@@ -378,8 +418,11 @@ BarrierReport report_of(const CrossingTable& crossings, const RunSummary& run, c
   report.values = o.observed.empty() ? "the simulated crossings" : "the observed crossings of " + o.observed;
   const talus::DesignBlockRule rule = add_design(report, blocks, all, run, o);
   if (!run.of_profile) add_stretches(report, all, blocks.size(), rule, screen);
+  if (!o.volume)
+    if (const auto note = stretch_energy_note(report)) report.notes.push_back(*note);
+  if (const auto note = unlikely_note(report)) report.notes.push_back(*note);
   add_crossings_per_year(report, weighting);
-  add_reliability(report, values, blocks, weighting, o.seed);
+  add_reliability({report, blocks, weighting, o.seed}, values, report.design, run.density);
   add_return_periods(report, blocks, weighting, o.years);
   return report;
 }

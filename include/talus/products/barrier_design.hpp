@@ -9,6 +9,10 @@
 
 namespace talus {
 
+inline constexpr double kLargestNetCapacity =
+    15e6;                                    ///< above that of any net [J]. docs/barrier.md, "Barriers in the walk"
+inline constexpr double kHighestNet = 12.0;  ///< above the height of any net [m]
+
 /// Partial factors of UNI 11211-4. docs/barrier.md, "Design values".
 struct DesignFactors {
   double trajectory = 1.10;  ///< gTr: 1.02 where the model was calibrated on the site, else 1.10 [-]

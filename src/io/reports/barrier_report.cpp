@@ -126,8 +126,9 @@ Json stretch_of(const Stretch& s) {
 
 std::string width_text(const BarrierWidth& width, double containment) {
   return "\nwidth\n  for a containment of " + percent(containment) + "  " + stretch_text(width.shortest) +
-         "\n  by the map                   " + (width.above ? stretch_text(*width.above) : std::string("no bin")) +
-         ": bins of " + with_digits(width.bin, 4) + " m that more than " + percent(1.0 - containment) +
+         "\n  by the map                   " +
+         (width.above ? stretch_text(*width.above) + ": " : std::string("none: no ")) + "bins of " +
+         with_digits(width.bin, 4) + " m that more than " + percent(1.0 - containment) +
          " of the released blocks cross\n";
 }
 
@@ -322,7 +323,7 @@ std::string barrier_csv(const BarrierReport& r) {
     std::string law = ",,,", share = ",,,";
     for (const Reliability& quantity : r.reliability)
       for (const Reliability::Limit& limit : quantity.limits) {
-        if (limit.name != row.name) continue;
+        if (limit.name != row.name || quantity.quantity == kCentre) continue;  // h_i: of the jump, as in the paper
         if (quantity.fit.accepted()) law = csv_share(limit.exceeded.fitted, limit.exceeded.fitted_bounds);
         share = csv_share(limit.exceeded.observed, limit.exceeded.observed_bounds);
       }

@@ -119,10 +119,12 @@ Markup not_assessed_row(const std::string& name, const ObjectsPart& part, bool c
          "'>not assessed: the DEM has no height there</td></tr>\n";
 }
 
-/// "120 [80 to 300]": the return period of a frequency with its bounds; without an event the lower bound alone.
+/// "120 [80 to 300]": the return period of a frequency with its bounds; without an event the lower bound alone. Where
+/// the frequency has no upper bound "at most 120", or "not known".
 std::string years_text(std::optional<double> frequency, std::optional<double> low, std::optional<double> high) {
   const auto once_in = [](std::optional<double> f) { return f && *f > 0.0 ? readable(1.0 / *f) : std::string(); };
   const std::string years = once_in(frequency), least = once_in(high), most = once_in(low);
+  if (!high) return years.empty() ? "not known" : "at most " + years;
   if (least.empty()) return years.empty() ? "no event" : years;
   return (years.empty() ? "no event" : years) + " [" + least + (most.empty() ? " or more]" : " to " + most + "]");
 }
@@ -133,13 +135,18 @@ std::string class_text(const ObjectsPart::Object& object, const std::vector<std:
     return c && *c < classes.size() ? classes[*c] : std::string();
   };
   const std::string low = name(object.lowest_class), high = name(object.highest_class);
+  if (high.empty() && !low.empty()) return name(object.hazard_class) + " or higher";
   return name(object.hazard_class) + (low == high ? "" : " [" + low + " to " + high + "]");
 }
 
 Markup object_row(const ObjectsPart::Object& object, const std::vector<std::string>& classes) {
-  Markup row = "<tr><td>"_html + object.name + "</td><td class='n'>" + with_digits(object.frequency, 3) + " [" +
-               with_digits(object.low, 3) + ", " + with_digits(object.high, 3) + "]</td><td class='n'>" +
-               years_text(object.frequency, object.low, object.high) + "</td>";
+  const bool part = !object.high;
+  Markup row =
+      "<tr><td>"_html + object.name +
+      (part ? " (" + percent(object.without_height, 2) + " of it not assessed: the DEM has no height there)" : "") +
+      "</td><td class='n'>" + (part ? "at least " : "") + with_digits(object.frequency, 3) + " [" +
+      with_digits(object.low, 3) + ", " + (part ? "?" : with_digits(*object.high, 3)) + "]</td><td class='n'>" +
+      years_text(object.frequency, object.low, object.high) + "</td>";
   for (const std::string& years : object.years) row += "<td class='n'>"_html + years + "</td>";
   if (!classes.empty()) row += "<td>"_html + class_text(object, classes) + "</td>";
   return row + "<td>" + shortened(object.sources, 300) + "</td></tr>\n";
@@ -149,14 +156,15 @@ void add_object(const CsvTable& table, const CsvTable::Row& row, ObjectsPart& pa
   const std::string& name = table.text(row, "object");
   const auto number = [&](const std::string& column) { return table.number(row, column, kAny); };
   const auto frequency = number("frequency"), low = number("frequency_lower"), high = number("frequency_upper");
-  if (!frequency || !low || !high) {
+  if (!frequency || !low) {
     if (part.not_assessed.size() < kMostObjects)
       part.not_assessed.push_back(name);
     else
       ++part.not_assessed_left_out;
     return;
   }
-  ObjectsPart::Object object{name, table.text(row, "sources"), *frequency, *low, *high, {}, {}, {}};
+  ObjectsPart::Object object{name, table.text(row, "sources"), *frequency, *low, high};
+  object.without_height = number("share_without_height").value_or(0.0);
   const auto hazard_class = [&](const std::string& column) -> std::optional<std::size_t> {
     const auto c = number(column);
     return c && *c >= 0.0 && *c < 1e3 ? std::optional(static_cast<std::size_t>(*c)) : std::nullopt;
@@ -213,7 +221,8 @@ Markup objects_html(const ObjectsPart& part, bool pieces, const std::vector<std:
       "frequencies; where the classes at the bounds differ (in brackets), it is not decided: take more trajectories. "
       "The map \"Hazard class\" has that of each cell: the longer an object, "
       "the more often it is hit, and its class may be higher than that of every cell. To compare parts of a road, cut "
-      "it into sections of one length.</p>\n"_html;
+      "it into sections of one length. A block counts for each object that it hits, for both of two sections at their "
+      "border: do not add up their frequencies.</p>\n"_html;
   if (pieces) html += "<p>Blocks broke, and "_html + kHitsOfPieces + ".</p>\n";
   html += "<div class='wide'><table><tr><th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
   for (const std::string& energy : part.thresholds) html += "<th>above "_html + energy + " kJ once in [years]</th>";

@@ -16,7 +16,9 @@ struct ObjectsPart {
   /// An object that was assessed.
   struct Object {
     std::string name, sources;
-    double frequency = 0.0, low = 0.0, high = 0.0;  ///< [1/year]
+    double frequency = 0.0, low = 0.0;  ///< [1/year]
+    std::optional<double> high;         ///< nothing where a part of the object is not assessed
+    double without_height = 0.0;        ///< that part: a share, where the DEM has no height
     std::vector<std::string> years;                 ///< return period by threshold, with its bounds [years], in words
     std::vector<Point> curve;
     /// Numbers of its class, and of those at the bounds of the frequencies; nothing in a table without classes.

@@ -77,8 +77,14 @@ std::unique_ptr<OGRGeometry> geometry_of(const Parts& parts, double west, double
 /// Figures of an object, with the names of their columns. NaN and infinity are written as NULL or an empty field.
 using Figures = std::vector<std::pair<std::string, double>>;
 
-/// @param known  false: the figures of the object are not known, although blocks may touch its rim
-Figures figures_of(const HazardRules& rules, const ObjectHits& hits, bool known, const HazardMatrix& matrix) {
+bool is_upper_bound(const std::string& column) {
+  return column.ends_with("_upper");
+}
+
+/// @param without_height  share of the object where the DEM has no height: if that is all, its figures are not known,
+///                        although blocks may touch its rim; if it is some of it, the upper bounds are not known
+Figures figures_of(const HazardRules& rules, const ObjectHits& hits, double without_height,
+                   const HazardMatrix& matrix) {
   const HazardCurve curve(rules, hits.largest), entry(rules, hits.entry);
   const std::vector<double>& thresholds = rules.bins.thresholds();
   Figures figures{{"trajectories", static_cast<double>(hits.trajectories)}};
@@ -100,8 +106,9 @@ Figures figures_of(const HazardRules& rules, const ObjectHits& hits, bool known,
   const BoundedClass found = class_of(matrix, frequencies);
   add("hazard_class",
       {static_cast<double>(found.value), static_cast<double>(found.low), static_cast<double>(found.high)});
-  if (!known)
-    for (auto& [name, value] : figures) value = kNotGiven;
+  for (auto& [name, value] : figures)
+    if (!(without_height < 1.0) || (without_height >= kNoticedWithoutHeight && is_upper_bound(name))) value = kNotGiven;
+  figures.emplace_back("share_without_height", without_height);
   return figures;
 }
 
@@ -448,7 +455,8 @@ Bounded curve_point(const HazardCurve& curve, const EnergyBins& bins, std::size_
   return threshold ? curve.exceedance(*threshold) : curve.at(i);
 }
 
-std::string curve_rows(const std::string& object, const HazardCurve& curve, const EnergyBins& bins) {
+/// @param bounded  false: the upper bounds are not known
+std::string curve_rows(const std::string& object, const HazardCurve& curve, const EnergyBins& bins, bool bounded) {
   std::string rows;
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const int bin = curve.first() + static_cast<int>(i);
@@ -458,7 +466,8 @@ std::string curve_rows(const std::string& object, const HazardCurve& curve, cons
       continue;
     const Bounded f = curve_point(curve, bins, i);
     rows += object + ',' + csv_field(energy);
-    for (const double value : {f.value, f.low, f.high, 1.0 / f.value}) rows += ',' + csv_field(value);
+    for (const double value : {f.value, f.low, bounded ? f.high : kNotGiven, 1.0 / f.value})
+      rows += ',' + csv_field(value);
     rows += '\n';
   }
   return rows;
@@ -468,7 +477,7 @@ std::string curve_rows(const std::string& object, const HazardCurve& curve, cons
 
 std::string ObjectLayer::not_copied_text(const HazardRules& rules, const HazardMatrix& matrix) const {
   OGRFeature& model = *state_->features.front();
-  const std::vector<int> copied = copied_attributes(model, figures_of(rules, {}, false, matrix));
+  const std::vector<int> copied = copied_attributes(model, figures_of(rules, {}, 0.0, matrix));
   std::vector<std::string> left_out;
   for (int i = 0; i < model.GetFieldCount(); ++i) {
     const std::string name = model.GetFieldDefnRef(i)->GetNameRef();
@@ -497,10 +506,11 @@ std::vector<std::string> ObjectLayer::hits_text(const HazardRules& rules, const 
                                  : "";
     if (f.value > 0.0)
       lines.push_back(name + "hit " + with_digits(f.value, 3) + " times per year, once in " + readable(1.0 / f.value) +
-                      " years (95 %: " + with_digits(f.low, 3) + " to " + with_digits(f.high, 3) + " per year)" + lack);
+                      " years (95 %: " + with_digits(f.low, 3) +
+                      (lack.empty() ? " to " + with_digits(f.high, 3) : " at least") + " per year)" + lack);
     else
-      lines.push_back(name + never_hit_text(hits[i]) + "; at most " + with_digits(f.high, 3) +
-                      " times per year (95 %)" + lack);
+      lines.push_back(name + never_hit_text(hits[i]) +
+                      (lack.empty() ? "; at most " + with_digits(f.high, 3) + " times per year (95 %)" : lack));
   }
   return lines;
 }
@@ -525,7 +535,7 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
               from = "object,feature,frequency,share\n";
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const HazardCurve curve(rules, hits[i].largest);
-    const Figures figures = figures_of(rules, hits[i], state_->known(i), matrix);
+    const Figures figures = figures_of(rules, hits[i], state_->without_height[i], matrix);
     const std::string object = csv_field(state_->names[i]);
     std::string sources;
     for (const auto& [feature, share] : State::sources_of(state_->known(i) ? hits[i] : ObjectHits{})) {
@@ -541,7 +551,7 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
     const ObjectRow row{state_->names[i], *state_->features[i], figures, sources};
     writer->write(row, *geometry_of(state_->parts[i], grid.west, grid.south));
     table.add(row);
-    if (state_->known(i)) curves += curve_rows(object, curve, rules.bins);
+    if (state_->known(i)) curves += curve_rows(object, curve, rules.bins, !state_->is_partial(i));
   }
   const bool lines = std::ranges::all_of(state_->parts, [](const Parts& parts) { return parts.polygons.empty(); });
   writer->finish(lines ? StyledLayer::LineObjects : StyledLayer::AreaObjects);

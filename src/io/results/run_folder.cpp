@@ -120,8 +120,8 @@ std::vector<std::string> notes_of_run(const std::filesystem::path& folder, const
 std::optional<std::string> coefficient_note(double c) {
   constexpr double kLowC = 0.15;  // the SEL of the paper's Table 4 asks for 0.09 to 0.16
   if (!(c > kLowC)) return std::nullopt;
-  return "energies and jumps may be too low (unsafe): c = " + text_of(c) +
-         " (model.deformation_coefficient) is not given by the paper, and a lower c raises both. With the ground of "
+  return "energies, jumps, run-out and hits may be too low (unsafe): c = " + text_of(c) +
+         " (model.deformation_coefficient) is not given by the paper, and a lower c raises them. With the ground of "
          "a preset run with --deformation-coefficient 0.15 as well and take the higher values; a fitted ground holds "
          "for its own c alone: unless speeds were measured, fit it again with 0.15: "
          "docs/barrier.md, \"The value of c\"";

@@ -5,6 +5,7 @@
 
 #include "scenario_text.hpp"
 #include "talus/base/text.hpp"
+#include "talus/products/barrier_design.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus::io {
@@ -13,7 +14,6 @@ namespace {
 using Kind = TomlValue::Kind;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMostCapacity = 15e6, kMostHeight = 12.0;  // of a net [J], [m], by far: docs/barrier.md
 constexpr Bounds kPlaceOnMap{"from", "m", "coordinate in the system of the DEM", -1e8, 1e8};
 constexpr Bounds kBias{"speed", "1", "share of the value that an instrument reads too high", -0.9, 10.0};
 
@@ -105,11 +105,11 @@ void warn_of_unlikely_barriers(std::span<const Barrier> barriers, std::vector<st
     warnings.push_back("barriers: " + listed(idle) +
                        ": of height or capacity 0, which hold no block: was the number not filled in?");
   for (const Barrier& b : barriers)
-    if (b.height > 0.0 && std::isfinite(b.capacity) && (b.capacity > kMostCapacity || b.height > kMostHeight))
+    if (b.height > 0.0 && std::isfinite(b.capacity) && (b.capacity > kLargestNetCapacity || b.height > kHighestNet))
       names.push_back(b.id + " (" + text_of(1e-3 * b.capacity) + " kJ, " + text_of(b.height) + " m)");
   if (!names.empty())
-    warnings.push_back("barriers: " + listed(names) + ": above " + text_of(1e-3 * kMostCapacity) + " kJ or " +
-                       text_of(kMostHeight) +
+    warnings.push_back("barriers: " + listed(names) + ": above " + text_of(1e-3 * kLargestNetCapacity) + " kJ or " +
+                       text_of(kHighestNet) +
                        " m, more than any net: is the capacity in J, or is it a dam? Give kJ and m, and a dam the "
                        "capacity inf");
 }

@@ -12,6 +12,9 @@
 
 namespace talus::io {
 
+/// The height of the block's centre above the ground, as a quantity: where it is above h_i the block passes the net.
+inline constexpr const char* kCentre = "centre";
+
 /// Fitted distribution of one quantity, and the probabilities that design values are exceeded. In the units of the
 /// files.
 struct Reliability {
@@ -22,7 +25,7 @@ struct Reliability {
     std::optional<double> by_frequency;  ///< share of the crossings that exceed it, by their weights
     std::optional<Bounded> per_year;     ///< crossings that exceed it [1/year]
   };
-  std::string quantity, unit;  ///< "jump height", "m"
+  std::string quantity, unit;  ///< "jump height", "m"; `kCentre`
   WeibullFit fit;
   std::vector<Limit> limits;
 };
