@@ -316,7 +316,9 @@ Transformer::Transformer(LayerName layer, const std::string& from_wkt, const std
   if (!p.operation)
     throw InputError(p.layer.path + ": there is no transformation from " + crs_name(from_wkt) + " to " +
                      crs_name(to_wkt) +
-                     ": bring the layer into the system of the DEM first, with ogr2ogr -t_srs or gdalwarp -t_srs");
+                     ": bring the layer into the system of the DEM first, with ogr2ogr -t_srs or gdalwarp -t_srs (a "
+                     "local grid needs its shift and rotation: ogr2ogr -a_srs where the coordinates are those of the "
+                     "DEM already)");
 }
 
 Transformer::~Transformer() = default;

@@ -81,7 +81,7 @@ std::string size_warning(const Scenario& scenario, std::span<const Preset* const
   const Range diameters = diameters_of(scenario);
   const bool break_up = scenario.effects.fragmentation.threshold > 0.0;
   bool larger = false, smaller = false;
-  std::vector<std::string> strange;
+  std::vector<std::string> strange, unknown;  // fitted to other sizes, to sizes that are not known
   for (const Preset* preset : presets) {
     const FittedSizes& sizes = preset->sizes;
     if (!sizes.fitted) continue;  // `guess_warning`
@@ -89,14 +89,16 @@ std::string size_warning(const Scenario& scenario, std::span<const Preset* const
                under = below(sizes, diameters) || (sizes.known() && !sizes.of_pieces && break_up);
     if (sizes.known() && !over && !under) continue;
     larger = larger || over, smaller = smaller || under;
-    strange.push_back(std::string(preset->name) + " (" +
-                      (sizes.known() ? metres({sizes.smallest, sizes.largest}) : "not known") + ")");
-    if (std::count(strange.begin(), strange.end(), strange.back()) > 1) strange.pop_back();
+    std::vector<std::string>& list = sizes.known() ? strange : unknown;
+    list.push_back(std::string(preset->name) +
+                   (sizes.known() ? " (" + metres({sizes.smallest, sizes.largest}) + ")" : ""));
+    if (std::count(list.begin(), list.end(), list.back()) > 1) list.pop_back();
   }
   const std::string extrapolation = extrapolation_of_block_mass(scenario, diameters);
-  if (strange.empty() && extrapolation.empty()) return {};
+  if (strange.empty() && unknown.empty() && extrapolation.empty()) return {};
   std::string text = std::string(kOtherSizes) + metres(diameters) + (break_up ? ", of pieces less" : "");
   if (!strange.empty()) text += ", the ground was fitted to others: " + joined(strange);
+  if (!unknown.empty()) text += ", the sizes that the ground was fitted to are not known: " + joined(unknown);
   if (!extrapolation.empty()) return text + extrapolation;
   return text + (find_effect("block-mass")->acts(scenario.effects)
                      ? "; [effects.block-mass] changes roughness and damping with the size here, see docs/effects.md"

@@ -52,11 +52,15 @@ Sources sources_of(const Scenario& s) {
 
 void check_contradictions(const Scenario& s, const Sources& found) {
   if (found.count() > 1)
-    refuse(std::string("is given by ") + (found.features ? "the field frequency of the sources, " : "") +
-           (found.classes ? "the classes of blocks.diameter, " : "") +
-           (found.total ? "frequency.total (--frequency), " : "") + (found.area ? "frequency.per_area, " : "") +
-           (found.law ? "frequency.power_law, " : "") + "must be given by one of them: leave out the others" +
-           (found.features ? " (--field frequency= leaves out the field)" : ""));
+    refuse(
+        std::string("is given by ") + (found.features ? "the field frequency of the sources, " : "") +
+        (found.classes ? "the classes of blocks.diameter, " : "") +
+        (found.total ? "frequency.total (--frequency), " : "") + (found.area ? "frequency.per_area, " : "") +
+        (found.law ? "frequency.power_law, " : "") + "must be given by one of them: leave out the others" +
+        (found.features ? " (--field frequency= leaves out the field)" : "") +
+        (found.features && found.classes
+             ? "; for the frequency of each source with shares of sizes give the classes weight in place of frequency"
+             : ""));
   if (found.features)
     for (const SourceCell& cell : s.sources)
       if (std::isnan(s.features[cell.feature].frequency))
