@@ -8,15 +8,16 @@ The pit is invented: four faces 15 m high at 70 degrees, berms 8 m wide between 
 strike. Heights are taken at the centres of the cells. Blocks of 0.3 to 1 m start 0.2 m above the faces, from 80 m of their length;
 quarry-face-2d with psi_scale 0.6 on the faces, quarry-floor-2d with psi_scale 0.3 elsewhere.
 
-Rows: the profile (step 0.1 m); the profile with its toes, or its edges, cut by a chord 1 m long in plan; DEMs by cells and
-direction (of the fall, from the grid's east); with a bund on each berm (1.5 m high, flanks 1:1, its outer foot at the edge), in the
-profile and in DEMs; with a [barriers] line of the height of the bund along its crest, through which nothing breaks.
+Rows: the profile (step 0.1 m); the profile with its toes, or its edges, cut by a chord 1 m long in plan, or with c = 0.15
+(docs/barrier.md, "The value of c"); DEMs by cells and direction (of the fall, from the grid's east); a bund on each berm (1.5 m
+high, flanks 1:1, its outer foot at the edge), in profiles and DEMs; a [barriers] line of the height of the bund along its crest,
+through which nothing breaks.
 
 Columns: percent of the blocks of a face that rest between its crest and the outer edge of its berm, with the half-width of the
 binomial 95 % interval; percent of the top face's blocks that rest on the floor; distance from the lowest toe within which 95 % of
 the lowest face's blocks rest. --work keeps the runs: CELL-DIRECTION-FORM has out/stops.gpkg and berms.gpkg.
 
-Two minutes of one core. Results: docs/pits.md.
+Half a minute of one core. Results: docs/pits.md.
 Needs numpy and GDAL's python binding (Debian: python3-numpy python3-gdal).
 """
 import math
@@ -116,9 +117,9 @@ def of_dem(o, cell, degrees, form=""):
     return [np.array(found) for found in rests.values()]
 
 
-def of_profile(o, form=""):
-    """Places of rest along the profile, of the blocks of each face."""
-    folder, rests = f"{o.work}/profile-{form or 'plain'}", []
+def of_profile(o, form="", c=0.25):
+    """Places of rest along the profile, of the blocks of each face. c: of the deformation energy; 0.25 is the program's."""
+    folder, rests = f"{o.work}/profile-{form or 'plain'}-{c:g}", []
     os.makedirs(folder, exist_ok=True)
     write_table(f"{folder}/pit.csv", "x,z", [(f"{x:.3f}", f"{z:.3f}") for x, z in nodes(form)])
     zones = ", ".join(f"[{crest:.3f}, {toe:.3f}]" for crest, toe in zip(CRESTS, TOES))
@@ -126,7 +127,8 @@ def of_profile(o, form=""):
         write_text(f"{folder}/face{i}.toml",
                    f'profile = "pit.csv"\nstep = 0.1\ntrajectories = {o.blocks}\n[sources]\nx = [{crest:.3f}, {toe:.3f}]\n'
                    'release_height = 0.2\n[blocks]\ndiameter = [0.3, 1.0]\n[ground]\ndefault = "quarry-floor-2d"\n'
-                   f'[ground.zones.face]\npreset = "quarry-face-2d"\nx = [{zones}]\n[output]\ntrajectories = 0\n')
+                   f'[ground.zones.face]\npreset = "quarry-face-2d"\nx = [{zones}]\n[output]\ntrajectories = 0\n'
+                   f'[model]\ndeformation_coefficient = {c}\n')
         talus(o, "profile", f"{folder}/face{i}.toml", "-o", f"{folder}/out{i}", "--overwrite", "-q", "--threads", o.threads)
         rests.append(np.array([float(row["x"]) for row in read_table(f"{folder}/out{i}/stops.csv")]))
     return rests
@@ -145,10 +147,12 @@ def rows(o):
     yield ["profile", "", "", *row(of_profile(o))]
     yield ["profile, toes cut", "", "", *row(of_profile(o, "toes"))]
     yield ["profile, edges cut", "", "", *row(of_profile(o, "edges"))]
+    yield ["profile, c = 0.15", "", "", *row(of_profile(o, c=0.15))]
     for cell in o.cells:
         for degrees in o.directions:
             yield ["DEM", f"{cell:g}", f"{degrees:g}", *row(of_dem(o, cell, degrees))]
     yield ["profile, bund", "", "", *row(of_profile(o, "bund"))]
+    yield ["profile, bund, c = 0.15", "", "", *row(of_profile(o, "bund", 0.15))]
     for cell in o.cells:
         yield ["DEM, bund", f"{cell:g}", f"{o.directions[0]:g}", *row(of_dem(o, cell, o.directions[0], "bund"))]
     yield ["DEM, barrier line", f"{o.cells[0]:g}", f"{o.directions[0]:g}", *row(of_dem(o, o.cells[0], o.directions[0], "barrier"))]
