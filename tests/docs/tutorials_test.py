@@ -87,6 +87,20 @@ class Tutorials(unittest.TestCase):
         with open(os.path.join(ROOT, "docs", "mapped-deposits.md"), encoding="utf-8") as file:
             self.assertIn("falls from 0.975 to 0.592", file.read())
 
+    def test_pits(self):
+        """Rows of the table, and what the command of the page prints of a run of the study."""
+        with open(os.path.join(ROOT, "docs", "pits.md"), encoding="utf-8") as file:
+            page = file.read()
+        (command,) = re.findall(r"^```\n(ogr2ogr .*?)^```$", page, re.M | re.S)
+        with tempfile.TemporaryDirectory() as folder:
+            study = [os.path.join(ROOT, "tools/scripts/studies/pit_study.py"), "--talus", TALUS, "--work", folder, "--cells", "0.25", "--directions", "0"]
+            done = subprocess.run(study, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            for line in done.stdout.splitlines():
+                self.assertIn(line + "\n", page)
+            kept = subprocess.run(["bash", "-c", command], cwd=os.path.join(folder, "0.25-0-plain"), capture_output=True, text=True, check=True).stdout
+            self.assertIn("".join(f"    {line}\n" for line in kept.splitlines()), page)
+
     def test_read_maps(self):
         self.run_page("read-maps.md")
 
