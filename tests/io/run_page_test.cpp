@@ -232,7 +232,7 @@ TEST(Escaping, EveryFieldOfEverySection) {
 
 /// Of an object whose larger part is not assessed nothing is told that looks safe.
 TEST(ObjectsTable, SaysWhatIsNotAssessed) {
-  ObjectsPart::Object object{"km 1.6", "cliff", 0.0, 0.0, std::nullopt, 0.67, {"not known"}};
+  ObjectsPart::Object object{"km 1.6", "cliff", 0.0, 0.0, std::nullopt, 0.67, {"not known"}, {}};
   object.hazard_class = object.lowest_class = 0;
   const auto text = [&] {
     ObjectsPart part;
