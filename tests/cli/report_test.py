@@ -448,6 +448,17 @@ class Files(Report):
         self.run_scenario("out", "--overwrite")  # the pages belong to the folder
         self.assertFalse([name for name in os.listdir(self.path("out")) if name.endswith(".html")])
 
+    def test_a_link_stays_and_leads_to_the_new_page(self):  # it was replaced by a page, what it led to stayed
+        self.results(hazard=False)
+        os.mkdir(self.path("web"))
+        os.symlink("web/page.html", self.path("page.html"))
+        report = ["report", self.path("out"), "-o"]
+        self.run_well(*report, self.path("web/page.html"))
+        self.run_well(*report, self.path("page.html"), "--title", "Second title", "--overwrite")
+        self.assertEqual(os.readlink(self.path("page.html")), "web/page.html")
+        self.assertEqual(os.listdir(self.path("web")), ["page.html"])
+        self.assertIn("Second title", self.read_text("web/page.html"))
+
     def test_no_hidden_file_is_left_by_a_signal(self):
         self.results(hazard=False)
         told = 0
