@@ -130,6 +130,14 @@ class Hazard(OneThread, KeptRuns, Case):
         self.refused("is damaged", "hazard", self.path("out"), "--overwrite")
         self.assertTrue(os.path.exists(self.path("out/intensity_T50.tif")), "what was there stays")
 
+    def test_names_of_classes_that_cannot_be_told_apart(self):  # the maps and the report showed two classes of one name
+        self.simulated()
+        for names, words in (('["none", "low", "low"]', "names: classes 1 and 2 are both called 'low', must have names that"),
+                             ('["none", " ", "low"]', "names: class 1 has an empty name")):
+            matrix = self.write("m.toml", f"energies = [100]\nyears = [50]\nclasses = [[1, 0], [2, 1]]\nnames = {names}\n")
+            self.refused(words, "hazard", self.path("out"), "--matrix", matrix)
+        self.assertFalse(os.path.exists(self.path("out/hazard.json")))
+
     def test_the_tally_of_another_run_is_refused(self):  # its maps came under the name of this run
         self.simulated()
         self.simulate("other", "--seed", "2")
