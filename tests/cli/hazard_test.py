@@ -371,14 +371,31 @@ class Hazard(OneThread, KeptRuns, Case):
         self.assertIn(twice.format(0.4), said)
         self.assertNotIn(twice.format(0.2), said)
         for rules, shapes, words in (("", [("a",), ("b",)], once + ": join"),
-                                     ("", [("a", 0.1), ("b", 0.2)], None)):  # each has events of its own
+                                     ("", [("a", 0.1), ("b", 0.2)], once + ", so that the events per year of each count there: join")):
             self.write("s.toml", RUN.replace("200", "20") + rules)
             self.place_sources([(box(100, 230, 20, 10), list(values)) for values in shapes],
                                [*fields, ("frequency", ogr.OFTReal)][:len(shapes[0])])
             said = self.run_well("check", self.path("s.toml")).stdout
-            self.assertIn(words, said) if words else self.assertNotIn("sources overlap", said)
+            self.assertIn(words, said)
         self.place_sources([(box(100, 230, 20, 10), ["a"]), (box(120, 230, 20, 10), ["b"])], fields)  # side by side
         self.assertNotIn("sources overlap", self.run_well("check", self.path("s.toml")).stdout)
+
+    def test_points_that_are_there_twice_are_said(self):  # they released twice without a word
+        fields = [("name", ogr.OFTString), ("frequency", ogr.OFTReal), ("vx", ogr.OFTReal)]
+        west, north = f"POINT ({WEST + 100} {NORTH - 65})", f"POINT ({WEST + 100} {NORTH - 60})"
+        for shapes, words in (([(west, ["a", 0.5, 1.0]), (north, ["b", 0.5, 1.0]), (west, ["a", 0.5, 1.0])], "1 point has the place and the fields of another (FID 3), and"),
+                              ([(west, [None, None, None])] * 3, "2 points have the place and the fields of another (FID 2, 3), and"),
+                              ([(f"MULTIPOINT ({west[7:-1]}, {west[7:-1]})", ["a", 0.5, 1.0])], "1 point has the place and the fields of another (FID 1), and"),
+                              ([(west, ["a", 0.5, 1.0]), (west, ["b", 0.5, 1.0]), (west, ["a", 0.4, 1.0]), (west, ["a", 0.5, 2.0])], None)):
+            self.place_sources(shapes, fields)
+            self.simulate("points", "--overwrite", "--trajectories", "5")
+            said = [one for one in self.record("points")["warnings"] if one.startswith("points of sources: ")]
+            self.assertEqual(len(said), 1 if words else 0, said)
+            if words:
+                self.assertIn(words, said[0])
+                self.assertIn("unless it is meant", said[0])
+            if shapes[0][1][1]:  # with frequencies: those who use the results are told, too
+                self.assertEqual("points of sources: " in self.run_well("hazard", self.path("points")).stderr, bool(words))
 
     def test_another_weighting_that_says_too_little_or_too_much(self):
         """In words of its own: there were those of a scenario, with the flag --field that talus hazard does not have."""
