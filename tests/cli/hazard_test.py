@@ -138,6 +138,18 @@ class Hazard(OneThread, KeptRuns, Case):
             self.refused(words, "hazard", self.path("out"), "--matrix", matrix)
         self.assertFalse(os.path.exists(self.path("out/hazard.json")))
 
+    def test_results_of_a_later_version_are_said(self):  # nobody looked at the version
+        self.simulated()
+        record = self.record()
+        first, second, rest = record["version"].split(".", 2)
+        for version, said in ((f"{first}.{int(second) + 1}.0", True), (f"{int(first) + 1}.0.0", True),
+                              (f"{first}.{second}.{int(rest.split('-')[0]) + 7}", False), ("", False)):
+            self.write("out/run.json", json.dumps({**record, "version": version}))
+            done = self.run_well("hazard", self.path("out"), "--overwrite")
+            words = f"run.json was written by Talus {version}, and this is the earlier version {record['version']}"
+            self.assertEqual(words in done.stderr, said, done.stderr)
+            self.assertEqual(any(words in warning for warning in self.read_json("out/hazard.json")["warnings"]), said)
+
     def test_the_tally_of_another_run_is_refused(self):  # its maps came under the name of this run
         self.simulated()
         self.simulate("other", "--seed", "2")
