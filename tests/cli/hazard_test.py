@@ -943,6 +943,14 @@ class Hazard(OneThread, KeptRuns, Case):
                        [("name", ogr.OFTString), ("width", ogr.OFTReal)])
         self.refused("field width = -6", "hazard", self.path("out"), "--objects", self.path("bad.gpkg"), "--overwrite")
 
+    def test_a_width_of_0_in_the_field_is_said(self):  # it counted as given, without a word
+        self.simulated()
+        line = "LINESTRING (2600020 1200150, 2600280 1200150)"
+        write_features(self.path("roads.gpkg"), "roads", [(line, ["a", 0.0]), (line, ["b", 4.0])],
+                       [("name", ogr.OFTString), ("width", ogr.OFTReal)])
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("roads.gpkg"))
+        self.assertIn("width = 0 of 1 line: a road of some width is hit more often (unsafe)", done.stderr)
+
     def test_the_width_of_a_polygon_is_not_read(self):
         self.simulated()
         house = "POLYGON ((2600100 1200140, 2600120 1200140, 2600120 1200160, 2600100 1200160, 2600100 1200140))"

@@ -237,6 +237,12 @@ class Layers(Case):
                        arguments=["run", *self.flags, "--sources", source, "-o", self.path("no")])
             os.remove(source)
 
+    def test_empty_velocities_are_said_to_count_as_0(self):
+        write_features(self.path("v.gpkg"), "sources", [(box(100, 230, 10, 10), [1.0, None]), (box(140, 230, 10, 10), [None, None])],
+                       [("vx", ogr.OFTReal), ("vy", ogr.OFTReal)])
+        done = self.run_well("check", *self.flags, "--sources", self.path("v.gpkg"), "--diameter", "1")
+        self.assertIn("vx 1 m/s (1 of 2 features, 1 empty, counted as 0), vy (empty, counted as 0)", done.stdout)
+
     def test_yes_and_no_are_no_numbers(self):  # a diameter of "yes" was 1 m
         file = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("yes.gpkg"))
         layer = file.CreateLayer("yes", system(2056), ogr.wkbPolygon)

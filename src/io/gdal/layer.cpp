@@ -36,11 +36,13 @@ std::string no_number_text(const std::string& text, const std::string& unit, boo
 }  // namespace
 
 std::string FieldUse::text(std::size_t features) const {
+  const std::string counted = zero_if_empty ? ", counted as 0" : "";
   std::string word = name;
   if (count > 0 && !is_text) word += " " + range() + (unit.empty() ? "" : " " + unit);
   if (!EQUAL(field.c_str(), name.c_str())) word += " from " + field;
-  word += " (" + (count == 0 ? "empty" : std::to_string(count) + " of " + std::to_string(features) + " features");
-  if (count > 0 && count < features) word += ", " + std::to_string(features - count) + " empty";
+  word +=
+      " (" + (count == 0 ? "empty" + counted : std::to_string(count) + " of " + std::to_string(features) + " features");
+  if (count > 0 && count < features) word += ", " + std::to_string(features - count) + " empty" + counted;
   return word + (from_text && count > 0 ? "; text, read as numbers)" : ")");
 }
 
