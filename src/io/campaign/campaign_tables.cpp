@@ -115,8 +115,7 @@ class Tables {
   }
 
   void warn_if_empty(const std::string& file, const CsvTable& table) {
-    if (table.rows().empty())
-      warnings_.push_back(file + ": has a header and no rows: it says nothing of any block");
+    if (table.rows().empty()) warnings_.push_back(file + ": has a header and no rows: it says nothing of any block");
   }
 
   void read_stops() {
