@@ -232,6 +232,12 @@ class Content(Report):
         self.assertEqual(len(warnings), 1, warnings)  # of the rare class
         self.assertRegex(self.page().text, r"Sizes of the blocks and the fit of the ground\s*no warning")
 
+    def test_results_of_a_later_version_are_said(self):
+        self.results(hazard=False)
+        self.assertNotIn("was written by Talus", self.page().text)
+        self.write("out/run.json", json.dumps({**self.record("out"), "version": "98.7.6"}))
+        self.assertIn("run.json was written by Talus 98.7.6, and this is the earlier version", self.page("--overwrite").text)
+
     def test_without_hazard_and_screens(self):
         write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), ["cliff"])], [("name", ogr.OFTString)])
         self.run_well(*self.arguments(), "-q")

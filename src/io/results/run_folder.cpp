@@ -68,14 +68,6 @@ std::pair<int, int> series_of(std::string_view text) {
   return series;
 }
 
-/// That a later version wrote the results; nothing if none did.
-std::optional<std::string> later_note(const Json& run) {
-  const std::string written = run.value("version", "");
-  if (!(series_of(version()) < series_of(written))) return std::nullopt;
-  return "run.json was written by Talus " + written + ", and this is the earlier version " + std::string(version()) +
-         ": what is new in it is not read; use that version or a later one";
-}
-
 std::optional<std::string> recorded_coefficient_note(const Json& run) {
   if (!run.contains("deformation_coefficient") || !run["deformation_coefficient"].is_number()) return std::nullopt;
   return coefficient_note(run["deformation_coefficient"].get<double>());
@@ -131,11 +123,17 @@ std::vector<std::string> notes_of_run(const std::filesystem::path& folder, const
   return understood(folder / "run.json", kRunAgain, [&] {
     std::vector<std::string> notes = warnings_for(run, use.frequency);
     for (const std::optional<std::string>& note :
-         {status_note(run), later_note(run), recorded_coefficient_note(run), standing_note(run, use.of_line),
-          wet_note(run, use.per_year), stand_note(run)})
+         {status_note(run), later_version_note(run.value("version", "")), recorded_coefficient_note(run),
+          standing_note(run, use.of_line), wet_note(run, use.per_year), stand_note(run)})
       if (note) notes.push_back(*note);
     return notes;
   });
+}
+
+std::optional<std::string> later_version_note(const std::string& written) {
+  if (!(series_of(version()) < series_of(written))) return std::nullopt;
+  return "run.json was written by Talus " + written + ", and this is the earlier version " + std::string(version()) +
+         ": what is new in it is not read; use that version or a later one";
 }
 
 std::optional<std::string> coefficient_note(double c) {
