@@ -12,6 +12,19 @@ bool ascend(const std::vector<double>& values) {
          std::ranges::adjacent_find(values, std::ranges::greater_equal{}) == values.end();
 }
 
+std::string fault_of_names(const std::vector<std::string>& names) {
+  if (names.empty() || names.size() > 16) return "names: must be 1 to 16 words, of class 0 first";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].find_first_not_of(" \t") == std::string::npos)
+      return "names: class " + std::to_string(i) + " has an empty name, must have one that maps and reports can show";
+    for (std::size_t j = 0; j < i; ++j)
+      if (names[i] == names[j])
+        return "names: classes " + std::to_string(j) + " and " + std::to_string(i) + " are both called '" + names[i] +
+               "', must have names that maps and reports can tell apart";
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string fault_of(const HazardMatrix& m) {
@@ -19,7 +32,7 @@ std::string fault_of(const HazardMatrix& m) {
     return "energies = " + list_text(m.energies) + ": must be 1 to 8 numbers above 0 kJ that ascend";
   if (!ascend(m.years) || m.years.size() > 8)
     return "years = " + list_text(m.years) + ": must be 1 to 8 numbers above 0 that ascend";
-  if (m.names.empty() || m.names.size() > 16) return "names: must be 1 to 16 words, of class 0 first";
+  if (std::string fault = fault_of_names(m.names); !fault.empty()) return fault;
   const std::string shape = "classes: must be " + std::to_string(m.energies.size() + 1) + " rows (weak first) of " +
                             std::to_string(m.years.size() + 1) + " whole numbers (often first; last what is rarer)";
   if (m.classes.size() != m.energies.size() + 1) return shape;

@@ -1,4 +1,5 @@
 """Errors of the program: exit codes, messages of one line, no half results."""
+import json
 import os
 import re
 import resource
@@ -20,6 +21,15 @@ class CommandLine(Case):
     def test_unknown_option_names_the_nearest(self):
         self.fails(2, "'--trajectory'", "did you mean '--trajectories'", arguments=["run", "--trajectory", "5", "-o", "x"])
         self.fails(2, "'--versoin'", "did you mean '--version'", arguments=["--versoin"])
+
+    def test_an_unknown_option_is_said_before_what_is_missing(self):  # "--out is required": the slip was not named
+        self.fails(2, "unknown option '--bogus'", arguments=["run", "--bogus"])
+        self.fails(2, "unknown option '--bogus'", arguments=["check", "--overwrite", "--bogus"])
+        done = self.call("run", "--progress=json", "--bogus")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("unknown option '--bogus'", json.loads(done.stderr)["error"])
+        self.fails(2, "--out is required", arguments=["run"])
+        self.fails(2, "--overwrite requires --pits", arguments=["check", "--overwrite"])
 
     def test_values_that_are_no_numbers(self):
         self.fails(2, "--diameter", "abc", arguments=self.arguments(diameter="abc"))

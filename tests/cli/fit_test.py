@@ -140,6 +140,15 @@ class OwnCampaign(Case):
         self.assertTrue(0 <= kappa["ci95"][0] <= kappa["ci95"][1] <= 3, kappa)
         self.assertEqual(record["start_model"], start)
 
+    def test_tables_of_a_header_alone_are_said(self):  # they passed for tables of blocks that nobody measured
+        self.write("s.csv", "id,x,y\n"), self.write("p.csv", "id,screen,speed_ms\n"), self.write("samples.csv", "id,x,y,speed_ms\n")
+        for file, other, names in (("stops.csv", "s.csv", ("s.csv", "samples.csv")), ("passages.csv", "p.csv", ("p.csv", "samples.csv"))):
+            text = self.read_text("campaign.toml").replace(file, other).replace("[measurement", 'samples = "samples.csv"\n[measurement')
+            done = self.run_well("score", self.write("empty.toml", text), "--parameters", self.path("truth.toml"), "--trials", "10")
+            for name in names:
+                self.assertIn(f"/{name}: has a header and no rows", done.stderr)
+            self.assertEqual(done.stderr.count("has a header and no rows"), 2, done.stderr)
+
     def assert_ranks_are_drawn(self, coverage):
         """ranks.svg has a histogram for each observable, with bars as high as its ranks."""
         svg = "{http://www.w3.org/2000/svg}"

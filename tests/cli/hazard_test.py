@@ -130,6 +130,26 @@ class Hazard(OneThread, KeptRuns, Case):
         self.refused("is damaged", "hazard", self.path("out"), "--overwrite")
         self.assertTrue(os.path.exists(self.path("out/intensity_T50.tif")), "what was there stays")
 
+    def test_names_of_classes_that_cannot_be_told_apart(self):  # the maps and the report showed two classes of one name
+        self.simulated()
+        for names, words in (('["none", "low", "low"]', "names: classes 1 and 2 are both called 'low', must have names that"),
+                             ('["none", " ", "low"]', "names: class 1 has an empty name")):
+            matrix = self.write("m.toml", f"energies = [100]\nyears = [50]\nclasses = [[1, 0], [2, 1]]\nnames = {names}\n")
+            self.refused(words, "hazard", self.path("out"), "--matrix", matrix)
+        self.assertFalse(os.path.exists(self.path("out/hazard.json")))
+
+    def test_results_of_a_later_version_are_said(self):  # nobody looked at the version
+        self.simulated()
+        record = self.record()
+        first, second, rest = record["version"].split(".", 2)
+        for version, said in ((f"{first}.{int(second) + 1}.0", True), (f"{int(first) + 1}.0.0", True),
+                              (f"{first}.{second}.{int(rest.split('-')[0]) + 7}", False), ("", False)):
+            self.write("out/run.json", json.dumps({**record, "version": version}))
+            done = self.run_well("hazard", self.path("out"), "--overwrite")
+            words = f"run.json was written by Talus {version}, and this is the earlier version {record['version']}"
+            self.assertEqual(words in done.stderr, said, done.stderr)
+            self.assertEqual(any(words in warning for warning in self.read_json("out/hazard.json")["warnings"]), said)
+
     def test_the_tally_of_another_run_is_refused(self):  # its maps came under the name of this run
         self.simulated()
         self.simulate("other", "--seed", "2")
@@ -363,14 +383,31 @@ class Hazard(OneThread, KeptRuns, Case):
         self.assertIn(twice.format(0.4), said)
         self.assertNotIn(twice.format(0.2), said)
         for rules, shapes, words in (("", [("a",), ("b",)], once + ": join"),
-                                     ("", [("a", 0.1), ("b", 0.2)], None)):  # each has events of its own
+                                     ("", [("a", 0.1), ("b", 0.2)], once + ", so that the events per year of each count there: join")):
             self.write("s.toml", RUN.replace("200", "20") + rules)
             self.place_sources([(box(100, 230, 20, 10), list(values)) for values in shapes],
                                [*fields, ("frequency", ogr.OFTReal)][:len(shapes[0])])
             said = self.run_well("check", self.path("s.toml")).stdout
-            self.assertIn(words, said) if words else self.assertNotIn("sources overlap", said)
+            self.assertIn(words, said)
         self.place_sources([(box(100, 230, 20, 10), ["a"]), (box(120, 230, 20, 10), ["b"])], fields)  # side by side
         self.assertNotIn("sources overlap", self.run_well("check", self.path("s.toml")).stdout)
+
+    def test_points_that_are_there_twice_are_said(self):  # they released twice without a word
+        fields = [("name", ogr.OFTString), ("frequency", ogr.OFTReal), ("vx", ogr.OFTReal)]
+        west, north = f"POINT ({WEST + 100} {NORTH - 65})", f"POINT ({WEST + 100} {NORTH - 60})"
+        for shapes, words in (([(west, ["a", 0.5, 1.0]), (north, ["b", 0.5, 1.0]), (west, ["a", 0.5, 1.0])], "1 point has the place and the fields of another (FID 3), and"),
+                              ([(west, [None, None, None])] * 3, "2 points have the place and the fields of another (FID 2, 3), and"),
+                              ([(f"MULTIPOINT ({west[7:-1]}, {west[7:-1]})", ["a", 0.5, 1.0])], "1 point has the place and the fields of another (FID 1), and"),
+                              ([(west, ["a", 0.5, 1.0]), (west, ["b", 0.5, 1.0]), (west, ["a", 0.4, 1.0]), (west, ["a", 0.5, 2.0])], None)):
+            self.place_sources(shapes, fields)
+            self.simulate("points", "--overwrite", "--trajectories", "5")
+            said = [one for one in self.record("points")["warnings"] if one.startswith("points of sources: ")]
+            self.assertEqual(len(said), 1 if words else 0, said)
+            if words:
+                self.assertIn(words, said[0])
+                self.assertIn("unless it is meant", said[0])
+            if shapes[0][1][1]:  # with frequencies: those who use the results are told, too
+                self.assertEqual("points of sources: " in self.run_well("hazard", self.path("points")).stderr, bool(words))
 
     def test_another_weighting_that_says_too_little_or_too_much(self):
         """In words of its own: there were those of a scenario, with the flag --field that talus hazard does not have."""
@@ -912,6 +949,14 @@ class Hazard(OneThread, KeptRuns, Case):
         write_features(self.path("bad.gpkg"), "roads", [(line, ["road", -6.0])],
                        [("name", ogr.OFTString), ("width", ogr.OFTReal)])
         self.refused("field width = -6", "hazard", self.path("out"), "--objects", self.path("bad.gpkg"), "--overwrite")
+
+    def test_a_width_of_0_in_the_field_is_said(self):  # it counted as given, without a word
+        self.simulated()
+        line = "LINESTRING (2600020 1200150, 2600280 1200150)"
+        write_features(self.path("roads.gpkg"), "roads", [(line, ["a", 0.0]), (line, ["b", 4.0])],
+                       [("name", ogr.OFTString), ("width", ogr.OFTReal)])
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("roads.gpkg"))
+        self.assertIn("width = 0 of 1 line: a road of some width is hit more often (unsafe)", done.stderr)
 
     def test_the_width_of_a_polygon_is_not_read(self):
         self.simulated()

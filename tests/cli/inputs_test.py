@@ -659,6 +659,18 @@ class OffTheDem(InputCase):
                              '[ground]\nfile = "zones.tif"\n[ground.zones.1]\npreset = "forest-road-3d"\n')
         self.fails(2, "zones.tif: has a scale or an offset (1, 1)", "gdal_translate -unscale", arguments=["check", self.path("s.toml")])
 
+    def test_a_nodata_code_beside_a_mask(self):  # GDAL goes by the mask alone: nodata counted as the code of a zone
+        codes, mask = np.ones((60, 60)), np.full((60, 60), 255, np.uint8)
+        codes[:30], mask[50:] = 7.0, 0
+        write_dem(self.path("zones.tif"), codes, nodata=7.0)
+        zones = gdal.Open(self.path("zones.tif"), gdal.GA_Update)
+        zones.CreateMaskBand(gdal.GMF_PER_DATASET)
+        zones.GetRasterBand(1).GetMaskBand().WriteArray(mask)
+        zones = None
+        self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1.2\n'
+                             '[ground]\nfile = "zones.tif"\n[ground.zones.1]\npreset = "forest-road-3d"\n')
+        self.assertIn("gives no zone to 67 % of the cells of the DEM", self.run_well("check", self.path("s.toml")).stdout)
+
     def test_what_two_settings_say(self):
         """The ground outside all zones twice, a zone called as a preset, a barrier without a capacity, a shape that nothing reads."""
         head = 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1.2\n'

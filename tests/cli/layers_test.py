@@ -41,6 +41,16 @@ class Layers(Case):
         source = next(i for i in self.record("named")["inputs"] if i["role"] == "sources")
         self.assertEqual(len(source["sha256"]), 64)
 
+    def test_another_spelling_of_a_layer(self):  # "no such file"
+        site, check = self.path("site.gpkg"), ["check", *self.flags, "--sources"]
+        for end in ("layer=cliffs", "cliffs", "LayerName=cliffs", "layername = cliffs"):
+            self.fails(2, "no such file", "; its layer is named by 'site.gpkg|layername=", "cliffs'", arguments=[*check, site + "|" + end])
+        done = self.fails(2, "no such file", arguments=[*check, self.path("none.gpkg|layer=cliffs")])
+        self.assertNotIn("layername", done.stderr)
+        self.run_well("run", *self.flags, "--sources", site + "|layername=cliffs", "--diameter", "1", "-o", self.path("o"), "--frequency", "1")
+        self.fails(2, "there is no such file; its layer is named by 'site.gpkg|layername=houses'",
+                   arguments=["hazard", self.path("o"), "--objects", site + "|layer=houses"])
+
     def test_what_a_layer_name_may_not_do(self):
         """A name with a layer is a file, too: it is not overwritten, and parts with other layers are not merged."""
         site, check = self.path("site.gpkg"), ["check", *self.flags, "--sources"]
@@ -56,10 +66,9 @@ class Layers(Case):
         self.fails(2, "--parameters: has an empty value", arguments=[*check, site + "|layername=cliffs", "--parameters", ""])
         self.fails(2, "must come with --zones", arguments=[*check, site + "|layername=cliffs", "--zone-field", "kind"])
         self.fails(2, "flag --frequency = 0: must be above 0", arguments=[*check, site + "|layername=cliffs", "--frequency", "0"])
-        self.run_well("sources", "--dem", self.path("dem.tif"), "-o", self.path("s.gpkg"), "--slope", "10")
+        self.run_well(*check, site + "|layername=cliffs", "--pits", self.path("p.gpkg"))
         self.fails(2, "is the file that --overwrite would replace",
-                   arguments=["check", *self.flags, "--sources", self.path("s.gpkg|layername=source_points"), "--diameter", "1",
-                              "--pits", self.path("s.gpkg"), "--overwrite"])
+                   arguments=[*check, self.path("p.gpkg|layername=pits"), "--diameter", "1", "--pits", self.path("p.gpkg"), "--overwrite"])
         years = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("years.gpkg"))
         for year in "2019/cliffs", "2020/cliffs":
             layer = years.CreateLayer(year, system(2056), ogr.wkbPolygon)
@@ -227,6 +236,12 @@ class Layers(Case):
             self.fails(2, "feature 2: field diameter = " + fault, "must be a number in m", "to_real(",
                        arguments=["run", *self.flags, "--sources", source, "-o", self.path("no")])
             os.remove(source)
+
+    def test_empty_velocities_are_said_to_count_as_0(self):
+        write_features(self.path("v.gpkg"), "sources", [(box(100, 230, 10, 10), [1.0, None]), (box(140, 230, 10, 10), [None, None])],
+                       [("vx", ogr.OFTReal), ("vy", ogr.OFTReal)])
+        done = self.run_well("check", *self.flags, "--sources", self.path("v.gpkg"), "--diameter", "1")
+        self.assertIn("vx 1 m/s (1 of 2 features, 1 empty, counted as 0), vy (empty, counted as 0)", done.stdout)
 
     def test_yes_and_no_are_no_numbers(self):  # a diameter of "yes" was 1 m
         file = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("yes.gpkg"))

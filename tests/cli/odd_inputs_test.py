@@ -152,6 +152,41 @@ class Elevations(OneThread, Case):
         dem.FlushCache()
         self.run_well(*check)
 
+    def masked(self, nodata=-9999.0):
+        """A DEM with a nodata value in one corner and a mask over another; 25 cells each."""
+        z, mask = heights(), np.full((60, 60), 255, np.uint8)
+        z[:5, :5], mask[40:45, 40:45] = nodata, 0
+        write_dem(self.path("m.tif"), z, nodata=nodata)
+        dem = gdal.Open(self.path("m.tif"), gdal.GA_Update)
+        dem.CreateMaskBand(gdal.GMF_PER_DATASET)
+        dem.GetRasterBand(1).GetMaskBand().WriteArray(mask)
+        return dem, mask, ["check", "--dem", self.path("m.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "0.8"]
+
+    def test_a_nodata_value_beside_a_mask(self):  # "declare it": it was declared, but GDAL goes by the mask alone
+        for nodata in (-9999.0, 1010.0, -3.4028234663852886e+38):
+            dem, mask, check = self.masked(nodata)
+            dem = None
+            done = self.run_well(*check)
+            self.assertIn("50 of them without a height", done.stdout)
+            self.assertIn("has a nodata value and a mask, and 25 cells have the value ", done.stdout)
+        dem, mask, check = self.masked()
+        mask[:5, :5] = 0
+        dem.GetRasterBand(1).GetMaskBand().WriteArray(mask)
+        dem = None
+        done = self.run_well(*check)
+        self.assertIn("50 of them without a height", done.stdout)
+        self.assertNotIn("a nodata value and a mask", done.stdout)
+
+    def test_a_second_nodata_value(self):  # the command declared the second and with it no longer the first
+        z = heights()
+        z[:5, :5], z[50, 50:55] = -9999.0, -32768.0
+        write_dem(self.path("two.tif"), z, nodata=-9999.0)
+        check = ["--sources", self.path("sources.gpkg"), "--diameter", "0.8"]
+        said = self.fails(2, "height -32768 m", "has the nodata value -9999 already",
+                          arguments=["check", "--dem", self.path("two.tif"), *check]).stderr
+        subprocess.run(said.split("declare it with ")[1].split(" (the file")[0], shell=True, cwd=self.folder, capture_output=True, check=True)
+        self.assertIn("30 of them without a height", self.run_well("check", "--dem", self.path("mended.tif"), *check).stdout)
+
     def test_heights_in_other_units(self):
         for unit, word, factor in (("cm", "centimetres", "A*0.01'"), ("km", "kilometres", "A*1000'"),
                                    ("Millimeter", "millimetres", "A*0.001'"), ("ft", "feet", "A*0.3048'"),

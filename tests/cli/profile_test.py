@@ -622,6 +622,23 @@ class Faults(OnASlope):
                     self.fails_with("line.csv", "no terrain under it 195 m from its start",
                                     "must lie on the DEM, strictly between the centres of its outermost cells")
 
+    def test_a_line_that_comes_back_to_itself(self):  # x stood for two grounds of one place, without a word
+        self.scenario("x = 10", head='dem = "dem.tif"\nline = "line.gpkg"\n')
+        for places, vertex in (([(150, 280), (150, 100), (150, 200)], 3), ([(150, 280), (150, 100), (150, 200), (150, 20)], 3),
+                               ([(150, 280), (150, 100), (151, 200), (152, 20)], 3),  # beside itself: drawn there and back
+                               ([(150, 280), (150, 150), (200, 150), (200, 200), (100, 200), (100, 20)], 5),
+                               ([(150, 280), (160, 280), (160, 200), (150, 200), (150, 280)], 5),
+                               ([(150, 280), (150, 200), (150, 200), (160, 150), (150, 20)], None)):
+            text = ", ".join(f"{WEST + x} {NORTH - 300 + y}" for x, y in places)
+            write_features(self.path("line.gpkg"), "line", [(f"LINESTRING ({text})", [])])
+            if vertex is None:
+                self.profile("--trajectories", "2")
+                continue
+            x, y = places[vertex - 1]
+            self.fails(2, "line.gpkg: the line runs back over itself or crosses itself before its vertex "
+                       f"{vertex} ({WEST + x:.1f}, {NORTH - 300 + y:.1f}), must pass each place once",
+                       arguments=["profile", self.path("p.toml"), "-o", self.path("out")])
+
     def test_a_line_off_the_dem_says_where_both_lie(self):
         self.scenario("x = 0", head='dem = "dem.tif"\nline = "line.csv"\n')
         self.write("line.csv", 'id,wkt\n1,"LINESTRING (8.09 46.68,8.1 46.69)"\n')

@@ -232,6 +232,12 @@ class Content(Report):
         self.assertEqual(len(warnings), 1, warnings)  # of the rare class
         self.assertRegex(self.page().text, r"Sizes of the blocks and the fit of the ground\s*no warning")
 
+    def test_results_of_a_later_version_are_said(self):
+        self.results(hazard=False)
+        self.assertNotIn("was written by Talus", self.page().text)
+        self.write("out/run.json", json.dumps({**self.record("out"), "version": "98.7.6"}))
+        self.assertIn("run.json was written by Talus 98.7.6, and this is the earlier version", self.page("--overwrite").text)
+
     def test_without_hazard_and_screens(self):
         write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), ["cliff"])], [("name", ogr.OFTString)])
         self.run_well(*self.arguments(), "-q")
@@ -458,6 +464,17 @@ class Files(Report):
         self.run_well("report", self.path("out"), "-o", self.path("out/for the canton.html"))
         self.run_scenario("out", "--overwrite")  # the pages belong to the folder
         self.assertFalse([name for name in os.listdir(self.path("out")) if name.endswith(".html")])
+
+    def test_a_link_stays_and_leads_to_the_new_page(self):  # it was replaced by a page, what it led to stayed
+        self.results(hazard=False)
+        os.mkdir(self.path("web"))
+        os.symlink("web/page.html", self.path("page.html"))
+        report = ["report", self.path("out"), "-o"]
+        self.run_well(*report, self.path("web/page.html"))
+        self.run_well(*report, self.path("page.html"), "--title", "Second title", "--overwrite")
+        self.assertEqual(os.readlink(self.path("page.html")), "web/page.html")
+        self.assertEqual(os.listdir(self.path("web")), ["page.html"])
+        self.assertIn("Second title", self.read_text("web/page.html"))
 
     def test_no_hidden_file_is_left_by_a_signal(self):
         self.results(hazard=False)

@@ -1,4 +1,5 @@
 """talus sources: candidate source cells, against gdaldem and by hand."""
+import hashlib
 import math
 import os
 import unittest
@@ -6,7 +7,7 @@ import unittest
 import numpy as np
 from osgeo import gdal
 
-from support import NORTH, WEST, Case, edited_by_a_viewer, heights, rows_of, sqlite_rows, write_dem
+from support import NORTH, WEST, Case, box, edited_by_a_viewer, heights, rows_of, sqlite_rows, write_dem, write_features
 
 CELL = 5.0
 
@@ -23,6 +24,10 @@ class Sources(Case):
 
     def layers(self, out="cells.gpkg"):
         return rows_of(self.path(out), "source_polygons"), rows_of(self.path(out), "source_points")
+
+    def digest(self, name):
+        with open(self.path(name), "rb") as file:
+            return hashlib.sha256(file.read()).hexdigest()
 
     def test_a_wall_by_hand(self):
         write_dem(self.path("dem.tif"), ridge(), CELL)
@@ -114,6 +119,40 @@ class Sources(Case):
         count = len(self.layers()[1])
         self.find("--slope", "34.9", "--overwrite")
         self.assertLess(len(self.layers()[1]), count)
+
+    def test_only_files_of_the_same_command_are_replaced(self):  # those of the other command were, without a word
+        self.find("--slope", "30")
+        pits = ["check", *self.arguments()[1:-2], "-q", "--overwrite", "--pits"]
+        sources = ["sources", "--dem", self.path("dem.tif"), "--slope", "30", "-q", "--overwrite", "-o"]
+        before = self.digest("cells.gpkg")
+        self.fails(2, "what the same command has written (pits)", "other layers: source_polygons, source_points", "give a new name",
+                   arguments=[*pits, self.path("cells.gpkg")])
+        self.assertEqual(self.digest("cells.gpkg"), before)
+        self.run_well(*pits[:-2], "--pits", self.path("pits.gpkg"))
+        before = self.digest("pits.gpkg")
+        self.fails(2, "(source_polygons, source_points)", "other layers: pits", arguments=[*sources, self.path("pits.gpkg")])
+        self.assertEqual(self.digest("pits.gpkg"), before)
+        write_features(self.path("others.gpkg"), "pits", [(box(1, 1, 1, 1), [])])
+        self.fails(2, "was written by another program", arguments=[*pits, self.path("others.gpkg")])
+        with open(self.path("json.gpkg"), "w", encoding="utf-8") as file:  # GDAL opens it whatever its name is
+            file.write('{"type": "FeatureCollection", "name": "pits", "features": []}')
+        self.fails(2, "is no GeoPackage", arguments=[*pits, self.path("json.gpkg")])
+
+    def test_a_link_stays_and_leads_to_the_new_file(self):  # it was replaced by a file, the file it led to stayed
+        os.mkdir(self.path("far"))
+        os.symlink("far/cells.gpkg", self.path("cells.gpkg"))
+        self.fails(2, "is a link to far/cells.gpkg, which is not there",
+                   arguments=["sources", "--dem", self.path("dem.tif"), "-o", self.path("cells.gpkg")])
+        self.find("--slope", "30", out="far/cells.gpkg")
+        count = len(self.layers()[1])
+        self.find("--slope", "34.9", "--overwrite")
+        self.assertEqual(os.readlink(self.path("cells.gpkg")), "far/cells.gpkg")
+        self.assertEqual(os.listdir(self.path("far")), ["cells.gpkg"])
+        self.assertLess(len(self.layers()[1]), count)
+        os.rename(self.path("far/cells.gpkg"), self.path("far/cells.bak"))
+        os.symlink("cells.bak", self.path("far/cells.gpkg"))
+        self.fails(2, "cells.bak, which must end in .gpkg", "give another name",
+                   arguments=["sources", "--dem", self.path("dem.tif"), "-o", self.path("cells.gpkg"), "--overwrite"])
 
     def test_the_log_of_an_earlier_file_goes_with_it(self):  # the new file was read as damaged
         self.find("--slope", "30")

@@ -279,7 +279,7 @@ void print_plan(const CheckOptions& options, const LoadedScenario& loaded) {
 /// Writes the map of the pits, if it is asked for.
 void write_pits(const CheckOptions& options, const LoadedScenario& loaded) {
   if (options.pits.empty()) return;
-  talus::io::OutputFile out(options.pits, ".gpkg", options.overwrite);
+  talus::io::OutputFile out(options.pits, ".gpkg", options.overwrite, talus::io::kPitLayers);
   for (const talus::io::InputFile& input : loaded.inputs) out.protect(input.path);
   catch_signals();
   talus::io::write_pits(out.temporary(), loaded.scenario.surface.heights(), loaded.geo,

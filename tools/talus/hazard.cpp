@@ -209,7 +209,7 @@ talus::io::HazardRecord asked_of(const HazardOptions& options) {
       throw talus::InputError(input + ": there is no such file" +
                               (input == options.frequency ? "; --frequency of this command takes a file: "
                                                             "docs/hazard.md, \"Another weighting\""
-                                                          : ""));
+                                                          : talus::io::spelling_of_layer(input)));
   if (!options.matrix.empty()) record.matrix = talus::io::read_matrix(options.matrix);
   return record;
 }

@@ -98,9 +98,12 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
     return text.substr(text.find(": ") + 2) + ": is not a valid number" +
            (text.find(';') != std::string::npos ? " (the numbers of a list stand like this: 30,100,300)" : "") +
            see_help;
-  if (!is(CLI::ExitCodes::ExtrasError) && !called.empty()) return text + see_help;
+  const std::vector<std::string> left = called.empty() ? std::vector<std::string>() : command.remaining(true);
+  const bool is_of_need = is(CLI::ExitCodes::RequiredError) || is(CLI::ExitCodes::RequiresError);
+  const bool has_unknown = std::ranges::any_of(left, [](const std::string& word) { return word.starts_with("-"); });
+  if (!is(CLI::ExitCodes::ExtrasError) && !called.empty() && !(is_of_need && has_unknown)) return text + see_help;
   const std::vector<std::string> given(words.begin() + 1, words.end());
-  for (const std::string& word : called.empty() ? given : command.remaining(true)) {
+  for (const std::string& word : called.empty() ? given : left) {
     if (word.starts_with("-"))
       return "unknown option '" + word + "'" + talus::known_names(word, option_names(command)) + see_help;
     if (called.empty()) return "unknown command '" + word + "'" + talus::known_names(word, commands) + see_help;

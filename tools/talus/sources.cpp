@@ -39,7 +39,7 @@ int find_sources(const SourcesOptions& options) {
     if (const auto rule = talus::fault_of(kSlope, *options.slope))
       throw talus::InputError("flag --slope = " + talus::with_digits(*options.slope, 6) + ": " + *rule);
   const auto keep_going = [] { return !interrupted(); };
-  talus::io::OutputFile out(options.out, ".gpkg", options.overwrite);
+  talus::io::OutputFile out(options.out, ".gpkg", options.overwrite, talus::io::kSourceLayers);
   out.protect(options.dem);
   const talus::io::Terrain terrain = talus::io::read_terrain(options.dem);
   catch_signals();

@@ -114,8 +114,13 @@ class Tables {
     return campaign_.blocks[found->second];
   }
 
+  void warn_if_empty(const std::string& file, const CsvTable& table) {
+    if (table.rows().empty()) warnings_.push_back(file + ": has a header and no rows: it says nothing of any block");
+  }
+
   void read_stops() {
     const CsvTable table(files_.stops, {"id", "x", "y", "mass_kg"}, {"id", "x", "y"});
+    warn_if_empty(files_.stops, table);
     table.for_each_row([&](const Row& row) {
       MeasuredBlock& block = block_of_row(table, row);
       const bool placed = !table.text(row, "x").empty() || !table.text(row, "y").empty();
@@ -147,6 +152,7 @@ class Tables {
     std::string first;
     std::vector<bool> off_map;
     for (const Screen& screen : campaign_.screens) off_map.push_back(is_off_map(screen));
+    warn_if_empty(files_.passages, table);
     table.for_each_row([&](const Row& row) {
       MeasuredBlock& block = block_of_row(table, row);
       const std::size_t screen = screen_of(table, row);
@@ -188,6 +194,7 @@ class Tables {
   void read_samples() {
     const CsvTable table(files_.samples, {"id", "x", "y", "z", "speed_ms", "angular_velocity_rads"}, {"id", "x", "y"});
     std::vector<std::string> again;  // lines of samples that are there already
+    warn_if_empty(files_.samples, table);
     table.for_each_row([&](const Row& row) {
       MeasuredBlock& block = block_of_row(table, row);
       const Eigen::Vector2d place = place_on_map(table, row);

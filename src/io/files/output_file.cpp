@@ -1,13 +1,12 @@
 #include "talus/io/files/output_file.hpp"
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "input_files.hpp"
 #include "io/gdal/dataset.hpp"
+#include "io/gdal/geopackage.hpp"
 #include "own_files.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -18,18 +17,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The layers of the files that may be replaced: of `talus sources` and `talus check --pits`.
-constexpr std::array<std::string_view, 3> kLayers{"source_polygons", "source_points", "pits"};
-
-/// The file that is to be replaced. Throws InputError if it is none of Talus's.
+/// The GeoPackage that is to be replaced. Throws InputError if it is none.
 Dataset earlier_file(const fs::path& path) {
   try {
-    return open_dataset(path.string(), GDAL_OF_VECTOR);
-  } catch (const InputError&) {
-    throw InputError(path.string() +
-                     ": --overwrite replaces only what talus has written, and this is no GeoPackage; "
-                     "give a new name, or remove it yourself");
+    Dataset file = open_dataset(path.string(), GDAL_OF_VECTOR);
+    if (EQUAL(file->GetDriverName(), "GPKG")) return file;
+  } catch (const InputError&) {  // as of a file of another kind
   }
+  throw InputError(path.string() +
+                   ": --overwrite replaces only what talus has written, and this is no GeoPackage; "
+                   "give a new name, or remove it yourself");
 }
 
 /// Layers that were edited after Talus had written them: it writes dates of 1970, editors that of the change.
@@ -43,23 +40,27 @@ std::vector<std::string> edited_layers(GDALDataset& file) {
   return edited;
 }
 
-/// --overwrite replaces what Talus has written, no other file of the same name. Throws InputError.
-void refuse_foreign(const fs::path& path) {
+/// --overwrite replaces what the same command has written, no other file of the same name. Throws InputError.
+/// @param layers  that the command writes
+void refuse_foreign(const fs::path& path, const std::vector<std::string>& layers) {
   const Dataset file = earlier_file(path);
   std::vector<std::string> foreign;
   for (int i = 0; i < file->GetLayerCount(); ++i)
-    if (const std::string name = file->GetLayer(i)->GetName(); std::ranges::find(kLayers, name) == kLayers.end())
+    if (const std::string name = file->GetLayer(i)->GetName();
+        name != kStylesTable && std::ranges::find(layers, name) == layers.end())
       foreign.push_back(name);
   if (!foreign.empty())
-    throw InputError(path.string() + ": --overwrite replaces only what talus has written, and this file has other " +
-                     "layers: " + listed(foreign) + "; give a new name, or remove it yourself");
+    throw InputError(path.string() + ": --overwrite replaces only what the same command has written (" +
+                     joined(layers) + "), and this file has other layers: " + listed(foreign) +
+                     "; give a new name, or remove it yourself");
   if (const auto edited = edited_layers(*file); !edited.empty())
-    throw InputError(path.string() + ": was edited after talus had written it (" + joined(edited) +
-                     "), and --overwrite would lose that; give a new name, or remove it yourself");
+    throw InputError(path.string() + ": was written by another program, or was edited after talus had written it (" +
+                     joined(edited) + "), and --overwrite would lose that; give a new name, or remove it yourself");
 }
 
-/// The absolute path. Throws InputError if no file can be written there.
-fs::path checked(const fs::path& path, const std::string& extension, bool overwrite) {
+/// Where the file is written. Throws InputError if none can be.
+fs::path checked(const fs::path& path, const std::string& extension, bool overwrite,
+                 const std::vector<std::string>& layers) {
   const std::string name = path.string();
   if (path.extension() != extension || path.stem().empty())
     throw InputError(name + ": the file must end in " + extension + ", for example result" + extension);
@@ -69,16 +70,21 @@ fs::path checked(const fs::path& path, const std::string& extension, bool overwr
     throw InputError(
         name +
         ": the file is there already; give a new name, or --overwrite where the command has it, or remove it first");
-  if (fs::exists(path) && overwrite) refuse_foreign(path);
-  return fs::absolute(path);
+  if (fs::exists(path) && overwrite) refuse_foreign(path, layers);
+  const fs::path place = behind_links(path);
+  if (place.extension() != extension)
+    throw InputError(name + ": is a link to " + place.string() + ", which must end in " + extension +
+                     "; remove the link, or give another name");
+  return place;
 }
 
 }  // namespace
 
-OutputFile::OutputFile(const fs::path& path, const std::string& extension, bool overwrite)
-    : staged_(StagedPath::Kind::File, checked(path, extension, overwrite), extension) {
+OutputFile::OutputFile(const fs::path& path, const std::string& extension, bool overwrite,
+                       const std::vector<std::string>& layers)
+    : staged_(StagedPath::Kind::File, checked(path, extension, overwrite, layers), extension) {
   parents_.make(staged_.path().parent_path());
-  refuse_unwritable(path.parent_path());
+  refuse_unwritable(fs::is_symlink(path) ? staged_.path().parent_path() : path.parent_path());
 }
 
 void OutputFile::protect(const fs::path& input) const {

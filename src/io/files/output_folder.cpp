@@ -26,9 +26,7 @@ fs::path full_name(const fs::path& path) {
     throw InputError("--out: the name of the folder is empty; give a new folder, for example -o result");
   if (path.string().find("|layer") != std::string::npos)
     throw InputError(path.string() + ": would be read as a layer of a file; give a folder without | in its name");
-  std::error_code error;
-  fs::path full = fs::weakly_canonical(fs::absolute(path), error);
-  if (error) full = fs::absolute(path).lexically_normal();
+  fs::path full = behind_links(path);
   if (full.filename().empty()) full = full.parent_path();
   if (full.filename().empty()) throw InputError(path.string() + ": cannot be a folder of results; give a new folder");
   return full;

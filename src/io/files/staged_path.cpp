@@ -22,6 +22,12 @@ void refuse_dangling_link(const fs::path& path) {
                    ", which is not there; remove the link, or give another name");
 }
 
+fs::path behind_links(const fs::path& path) {
+  std::error_code error;
+  fs::path full = fs::weakly_canonical(fs::absolute(path), error);
+  return error ? fs::absolute(path).lexically_normal() : full;
+}
+
 void refuse_unwritable(const fs::path& folder) {
   const fs::path place = folder.empty() ? fs::current_path() : folder;
   if (access(place.c_str(), W_OK | X_OK) == 0) return;

@@ -8,6 +8,8 @@
 
 namespace talus::io {
 
+inline constexpr char kStylesTable[] = "layer_styles";  ///< where QGIS keeps the styles of layers
+
 /// A GeoPackage that is being written, in one transaction. The dates that the format asks for are those of 1970. Rows
 /// of bulk layers are inserted by `BulkLayer`.
 class GeoPackage final : public LayerFile {

@@ -28,7 +28,7 @@ constexpr int kMostReaders = 4;  // pieces at once, of 18 MB each
 class HeightReader {
  public:
   explicit HeightReader(const std::string& path)
-      : path_(path), dataset_(open_dataset(path, GDAL_OF_RASTER)), band_(*dataset_->GetRasterBand(1)) {
+      : path_(path), dataset_(open_dataset(path, GDAL_OF_RASTER)), band_(*dataset_->GetRasterBand(1)), nodata_(band_) {
     int given = 0;
     scale_ = band_.GetScale(&given);
     if (given == 0) scale_ = 1.0;
@@ -52,9 +52,13 @@ class HeightReader {
   /// A height of the piece that was read last [m]; NaN: missing.
   /// @param i  counted row by row from the north-west
   double height(std::size_t i) const {
-    const bool there = !(masked_ && mask_[i] == 0) && std::isfinite(values_[i]);
+    const bool there = !(masked_ && mask_[i] == 0) && !nodata_.is(values_[i]) && std::isfinite(values_[i]);
     return there ? values_[i] * scale_ + offset_ : kNotGiven;
   }
+
+  /// Whether a cell that the mask does not leave out has the nodata value.
+  bool is_unmasked_nodata(std::size_t i) const { return masked_ && mask_[i] != 0 && nodata_.is(values_[i]); }
+  double nodata() const { return nodata_.value(); }
 
   /// The value of a height as stored in the file.
   double stored(double height) const { return (height - offset_) / scale_; }
@@ -63,6 +67,7 @@ class HeightReader {
   const std::string& path_;
   const Dataset dataset_;
   GDALRasterBand& band_;
+  const NodataBesideMask nodata_;
   double scale_ = 1.0, offset_ = 0.0;
   bool masked_ = false;
   std::vector<double> values_;
@@ -70,12 +75,24 @@ class HeightReader {
   GdalMessages messages_;
 };
 
+/// The command that makes a stored value one of missing heights. A file has one nodata value: another must not take its
+/// place.
+std::string command_to_declare(const std::string& path, const std::string& stored) {
+  const Dataset file = open_dataset(path, GDAL_OF_RASTER);
+  int given = 0;
+  const double nodata = file->GetRasterBand(1)->GetNoDataValue(&given);
+  if (given == 0) return edit_command(path, "-a_nodata " + stored);
+  return "gdal_calc.py -A " + shell_word(path) + " --calc='where(A==" + stored + "," + text_of(nodata) +
+         ",A)' --NoDataValue=" + text_of(nodata) +
+         " --type=Float32 --outfile=mended.tif (the file has the nodata value " + text_of(nodata) + " already)";
+}
+
 [[noreturn]] void refuse_height(const std::string& path, int column, int row, double height,
                                 const std::string& stored) {
   throw InputError(path + ": height " + text_of(height) + " m in column " + std::to_string(column) + ", row " +
                    std::to_string(row) + " (from 0 in the north-west), must be " + text_of(kLowest) + " to " +
                    text_of(kHighest) + " m: if it stands for missing values, declare it with " +
-                   edit_command(path, "-a_nodata " + stored) +
+                   command_to_declare(path, stored) +
                    (height > kHighest && height < 1e6
                         ? "; but if many are as large, they are not in metres: gdal_calc.py -A " + shell_word(path) +
                               " --calc='A*0.1' --type=Float32 --outfile=metres.tif of decimetres (A*0.01 of "
@@ -122,7 +139,7 @@ class HeightSteps {
 
 /// Counts of heights: the same in any order of the pieces.
 struct Counts {
-  std::uint64_t known = 0, zeros = 0;
+  std::uint64_t known = 0, zeros = 0, unmasked_nodata = 0;
   double lowest_other = std::numeric_limits<double>::infinity(),  // of those that are not 0 [m]
       highest_other = -std::numeric_limits<double>::infinity();
   HeightSteps steps;
@@ -138,6 +155,7 @@ struct Counts {
   void add(const Counts& other) {
     known += other.known;
     zeros += other.zeros;
+    unmasked_nodata += other.unmasked_nodata;
     lowest_other = std::min(lowest_other, other.lowest_other);
     highest_other = std::max(highest_other, other.highest_other);
     steps.add(other.steps);
@@ -158,7 +176,7 @@ std::string outliers_text(const std::string& path, const HeightSteps& steps) {
          (low ? "at " + text_of(std::floor(above.low)) + " m or higher"
               : "at " + text_of(std::ceil(below.high)) + " m or lower") +
          ": are they missing values, or a fault of the file? Missing values must be declared" +
-         (one ? ": " + edit_command(path, "-a_nodata " + text_of(HeightReader(path).stored(few.low))) : "");
+         (one ? ": " + command_to_declare(path, text_of(HeightReader(path).stored(few.low))) : "");
 }
 
 /// Reads one piece. Throws InputError if it cannot be read or holds what is no height.
@@ -173,6 +191,7 @@ void read_piece(HeightReader& reader, const std::string& path, const RasterPart&
     for (int column = part.left; column < part.right; ++column, ++i, ++out) {
       const double height = reader.height(i);
       *out = static_cast<float>(height);
+      if (reader.is_unmasked_nodata(i)) ++counts.unmasked_nodata;
       if (std::isnan(height)) continue;
       if (!(height >= kLowest && height <= kHighest))
         refuse_height(path, column, row, height, text_of(reader.stored(height)));
@@ -250,13 +269,19 @@ void read_heights(const std::string& path, Terrain& terrain, int threads) {
   if (found.known == 0)
     throw InputError(path + ": all cells are missing values, must hold heights: is its nodata value right? (gdalinfo " +
                      shell_word(path) + ")");
+  if (found.unmasked_nodata > 0)
+    terrain.warnings.push_back(path + ": the file has a nodata value and a mask, and " +
+                               std::to_string(found.unmasked_nodata) +
+                               (found.unmasked_nodata == 1 ? " cell has" : " cells have") + " the value " +
+                               text_of(HeightReader(path).nodata()) +
+                               " where the mask leaves nothing out: taken as "
+                               "missing, too");
   const bool above = found.lowest_other > kFarFromZero, below = found.highest_other < -kFarFromZero;
   if (found.zeros > 0 && found.zeros < found.known && (above || below))
     terrain.warnings.push_back(path + ": " + std::to_string(found.zeros) + " cells have the height 0 and all others " +
                                (above ? "more than " + text_of(std::floor(found.lowest_other))
                                       : "less than " + text_of(std::ceil(found.highest_other))) +
-                               " m: if 0 stands for missing values, declare it with " +
-                               edit_command(path, "-a_nodata 0"));
+                               " m: if 0 stands for missing values, declare it with " + command_to_declare(path, "0"));
   else if (std::string text = outliers_text(path, found.steps); !text.empty())
     terrain.warnings.push_back(std::move(text));
 }

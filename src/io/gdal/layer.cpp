@@ -15,12 +15,10 @@
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/layer_name.hpp"
+#include "talus/io/gdal/source_cells.hpp"
 
 namespace talus::io {
 namespace {
-
-/// The layers of `talus sources`, of which polygons are what others take as sources.
-const std::vector<std::string> kOfSources{"source_polygons", "source_points"};
 
 /// What a text must be in the place of a number. A comma is not taken as a decimal point: "1,200" may be 1200.
 /// @param in_layer  the text is in a text field of a layer, else in a CSV
@@ -38,11 +36,13 @@ std::string no_number_text(const std::string& text, const std::string& unit, boo
 }  // namespace
 
 std::string FieldUse::text(std::size_t features) const {
+  const std::string counted = zero_if_empty ? ", counted as 0" : "";
   std::string word = name;
   if (count > 0 && !is_text) word += " " + range() + (unit.empty() ? "" : " " + unit);
   if (!EQUAL(field.c_str(), name.c_str())) word += " from " + field;
-  word += " (" + (count == 0 ? "empty" : std::to_string(count) + " of " + std::to_string(features) + " features");
-  if (count > 0 && count < features) word += ", " + std::to_string(features - count) + " empty";
+  word +=
+      " (" + (count == 0 ? "empty" + counted : std::to_string(count) + " of " + std::to_string(features) + " features");
+  if (count > 0 && count < features) word += ", " + std::to_string(features - count) + " empty" + counted;
   return word + (from_text && count > 0 ? "; text, read as numbers)" : ")");
 }
 
@@ -122,7 +122,7 @@ void Layer::choose_layer() {
                                 ? dataset_->GetLayer(wanted.number)->GetName()
                                 : wanted.layer;
   const bool asked = !wanted.layer.empty() || wanted.number >= 0;
-  if (!asked && names.size() > 1 && names != kOfSources)
+  if (!asked && names.size() > 1 && names != kSourceLayers)
     throw InputError(
         wanted.file + ": has the layers " + joined(names) + ", must be told which, such as " +
         shell_word(std::filesystem::path(wanted.file).filename().string() + "|layername=" + names.front()));

@@ -30,7 +30,8 @@ struct FieldUse {
   int index = -1;
   bool is_text = false;    ///< what it holds is text
   bool from_text = false;  ///< numbers in a text field
-  std::size_t count = 0;   ///< of features with a value
+  bool zero_if_empty = false;
+  std::size_t count = 0;  ///< of features with a value
   double low = 0.0, high = 0.0;
 
   void add(double value);

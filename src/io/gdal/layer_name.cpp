@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <string_view>
 #include <system_error>
+
+#include "talus/base/shell.hpp"
 
 namespace talus::io {
 namespace {
@@ -48,6 +51,18 @@ NamedLayer named_layer(const std::string& name) {
     at = end;
   }
   return found;
+}
+
+std::string spelling_of_layer(const std::string& name) {
+  for (std::size_t at = name.find('|'); at != std::string::npos; at = name.find('|', at + 1)) {
+    std::error_code none;
+    const std::string file = name.substr(0, at), rest = name.substr(at + 1);
+    if (!std::filesystem::is_regular_file(file, none)) continue;
+    const std::string layer = rest.substr(rest.find('=') + 1);  // all of it without a "="
+    return "; its layer is named by " + shell_word(std::filesystem::path(file).filename().string() +
+                                                   "|layername=" + (layer.empty() ? "NAME" : layer));
+  }
+  return {};
 }
 
 }  // namespace talus::io

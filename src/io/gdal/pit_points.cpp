@@ -11,8 +11,8 @@ void write_pits(const std::filesystem::path& file, const Raster<float>& heights,
   const Grid& grid = heights.grid;
   const MapPlace place(geo, grid);
   GeoPackage package(file, geo);
-  OGRLayer* layer =
-      package.add_bulk_layer("pits", wkbPoint, {{"kind", OFTString}, {"depth_m", OFTReal}, {"z", OFTReal}});
+  OGRLayer* layer = package.add_bulk_layer(kPitLayers.front().c_str(), wkbPoint,
+                                           {{"kind", OFTString}, {"depth_m", OFTReal}, {"z", OFTReal}});
   const Feature feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
   for (int row = grid.rows - 1; row >= 0; --row)
     for (int column = 0; column < grid.columns; ++column) {
@@ -25,7 +25,7 @@ void write_pits(const std::filesystem::path& file, const Raster<float>& heights,
       feature->SetGeometry(&point);
       package.append(layer, *feature);
     }
-  package.set_style("pits", style);
+  package.set_style(kPitLayers.front(), style);
   package.finish();
 }
 

@@ -43,8 +43,17 @@ double PixelFinder::row(double x, double y) const {
   return std::floor(inverse_[3] + inverse_[4] * x + inverse_[5] * y);
 }
 
+NodataBesideMask::NodataBesideMask(GDALRasterBand& band) : single_(band.GetRasterDataType() == GDT_Float32) {
+  int given = 0;
+  value_ = band.GetNoDataValue(&given);
+  given_ = given != 0 && (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
+}
+
 PixelReader::PixelReader(GDALDataset& dataset, std::string path)
-    : band_(*dataset.GetRasterBand(1)), path_(std::move(path)), masked_((band_.GetMaskFlags() & GMF_ALL_VALID) == 0) {}
+    : band_(*dataset.GetRasterBand(1)),
+      path_(std::move(path)),
+      masked_((band_.GetMaskFlags() & GMF_ALL_VALID) == 0),
+      nodata_(band_) {}
 
 double PixelReader::at(double column, double row) {
   if (!(column >= 0.0 && row >= 0.0 && column < band_.GetXSize() && row < band_.GetYSize())) return kNotGiven;
@@ -71,7 +80,7 @@ void PixelReader::read(int x, int y, std::vector<double>& values) {
     throw InputError(path_ + ": cannot be read: " + messages_.take());
   if (!masked_) return;
   for (std::size_t k = 0; k < values.size(); ++k)
-    if (mask_[k] == 0) values[k] = kNotGiven;
+    if (mask_[k] == 0 || nodata_.is(values[k])) values[k] = kNotGiven;
 }
 
 }  // namespace talus::io

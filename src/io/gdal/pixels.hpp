@@ -24,6 +24,20 @@ class PixelFinder {
   std::array<double, 6> inverse_{};
 };
 
+/// The nodata value that a band declares beside a mask: GDAL then goes by the mask alone.
+class NodataBesideMask {
+ public:
+  explicit NodataBesideMask(GDALRasterBand& band);
+
+  /// Whether a stored value is that one.
+  bool is(double stored) const { return given_ && (single_ ? float(stored) == float(value_) : stored == value_); }
+  double value() const { return value_; }
+
+ private:
+  bool given_ = false, single_;
+  double value_ = 0.0;
+};
+
 /// Reads single pixels of the first band through a cache of the last tiles of the file.
 class PixelReader {
  public:
@@ -41,6 +55,7 @@ class PixelReader {
   GDALRasterBand& band_;
   std::string path_;
   bool masked_;
+  NodataBesideMask nodata_;
   std::map<std::pair<int, int>, std::vector<double>> tiles_;  // by row and column of tiles
   std::pair<int, int> key_{-1, -1};
   const double* tile_ = nullptr;

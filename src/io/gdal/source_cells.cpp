@@ -14,8 +14,6 @@
 namespace talus::io {
 namespace {
 
-constexpr char kPolygons[] = "source_polygons", kPoints[] = "source_points";
-
 /// Cells of a DEM: whether each is steep enough, and its slope.
 class Cells {
  public:
@@ -101,7 +99,7 @@ void describe(OGRFeature& row, const Cells& cells, const OGRPolygon& local) {
 
 void write_polygons(GeoPackage& file, const Cells& cells, OGRLayer& outlines, SourceCells& found,
                     const std::function<bool()>& keep_going) {
-  OGRLayer* layer = file.add_layer(kPolygons, wkbPolygon,
+  OGRLayer* layer = file.add_layer(kSourceLayers.front().c_str(), wkbPolygon,
                                    {{"slope_deg", OFTReal},
                                     {"slope_max_deg", OFTReal},
                                     {"area_m2", OFTReal},
@@ -122,7 +120,8 @@ void write_polygons(GeoPackage& file, const Cells& cells, OGRLayer& outlines, So
 
 void write_points(GeoPackage& file, const Cells& cells, const std::function<bool()>& keep_going) {
   const Grid& grid = cells.grid();
-  OGRLayer* layer = file.add_bulk_layer(kPoints, wkbPoint, {{"slope_deg", OFTReal}, {"area_m2", OFTReal}});
+  OGRLayer* layer =
+      file.add_bulk_layer(kSourceLayers.back().c_str(), wkbPoint, {{"slope_deg", OFTReal}, {"area_m2", OFTReal}});
   const Feature row(OGRFeature::CreateFeature(layer->GetLayerDefn()));
   for (int j = grid.rows - 1; j >= 0 && keep_going(); --j)
     for (int i = 0; i < grid.columns; ++i) {
@@ -149,8 +148,8 @@ SourceCells write_source_cells(const std::filesystem::path& file, const Terrain&
   GeoPackage package(file, terrain.geo);
   write_polygons(package, cells, *outlines->GetLayer(0), found, keep_going);
   write_points(package, cells, keep_going);
-  package.set_style(kPolygons, styles.polygons);
-  package.set_style(kPoints, styles.points);
+  package.set_style(kSourceLayers[0], styles.polygons);
+  package.set_style(kSourceLayers[1], styles.points);
   package.finish();
   return found;
 }

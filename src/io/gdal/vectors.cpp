@@ -61,6 +61,7 @@ std::vector<FieldUse> columns_of(const Layer& layer, const std::string& path, co
     if (index < 0 || (entry == mapped.end() && taken(index))) continue;
     FieldUse use{name, layer.field_names()[static_cast<std::size_t>(index)], {}, index};
     use.is_text = name == "name";
+    use.zero_if_empty = key_of(name) == "sources.velocity" && !use.is_text;
     const std::string unit(use.is_text ? "1" : bounds_of(key_of(name)).unit);
     if (unit != "1") use.unit = unit;
     use.from_text = !use.is_text && layer.holds_text(index);

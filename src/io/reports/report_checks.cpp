@@ -118,6 +118,8 @@ void check_ends(const RunFacts& run, Checks& checks) {
                     "Their path, or that of a piece, was not followed to its end."});
   if (run.status != "complete")
     checks.push_back({Mark::Act, "The run", run.status, "The run did not complete properly: do not use its results."});
+  if (auto note = later_version_note(run.version))
+    checks.push_back({Mark::Act, "The version", run.version, *note + "."});
 }
 
 void check_sizes(const RunFacts& run, Checks& checks) {

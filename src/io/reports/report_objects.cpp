@@ -163,7 +163,9 @@ void add_object(const CsvTable& table, const CsvTable::Row& row, ObjectsPart& pa
       ++part.not_assessed_left_out;
     return;
   }
-  ObjectsPart::Object object{name, table.text(row, "sources"), *frequency, *low, high};
+  ObjectsPart::Object object;
+  object.name = name, object.sources = table.text(row, "sources");
+  object.frequency = *frequency, object.low = *low, object.high = high;
   object.without_height = number("share_without_height").value_or(0.0);
   const auto hazard_class = [&](const std::string& column) -> std::optional<std::size_t> {
     const auto c = number(column);

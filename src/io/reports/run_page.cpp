@@ -210,7 +210,7 @@ std::string run_page(const RunPageRequest& request) {
   return page_of(frame, body);
 }
 
-RunPageFile::RunPageFile(const fs::path& file, bool overwrite, const fs::path& folder) : file_(file) {
+RunPageFile::RunPageFile(const fs::path& file, bool overwrite, const fs::path& folder) : file_(behind_links(file)) {
   require_results(folder);
   refuse_dangling_link(file);
   std::error_code none;
@@ -221,8 +221,8 @@ RunPageFile::RunPageFile(const fs::path& file, bool overwrite, const fs::path& f
       throw InputError(file.string() +
                        ": is there and no page of talus report, so it is not replaced; give another name by -o");
   }
-  parents_.make(fs::absolute(file).parent_path());
-  refuse_unwritable(file.parent_path());
+  parents_.make(file_.parent_path());
+  refuse_unwritable(fs::is_symlink(file, none) ? file_.parent_path() : file.parent_path());
 }
 
 void RunPageFile::write(const std::string& page) const {

@@ -146,7 +146,7 @@ struct ObjectLayer::State {
   std::string width_field = "width";
   std::vector<std::string> fields;  // of the layer
   bool named = false;               // a field may hold the names
-  std::size_t lines_of_their_width = 0, lines_of_given_width = 0, polygons_with_width = 0;
+  std::size_t lines_of_their_width = 0, lines_of_given_width = 0, lines_of_width_0 = 0, polygons_with_width = 0;
   std::vector<std::string> without_geometry;  // features that are left out
 
   bool known(std::size_t i) const { return without_height[i] < 1.0; }
@@ -215,6 +215,11 @@ void ObjectLayer::State::warn_of_widths(const std::string& path) {
   if (polygons_with_width > 0)
     warnings.push_back(path + ": the field " + width_field + " of " + std::to_string(polygons_with_width) +
                        " polygons is not used: it is for lines; a polygon is what it covers");
+  if (lines_of_width_0 > 0)
+    warnings.push_back(path + ": " + width_field + " = 0 of " + std::to_string(lines_of_width_0) +
+                       (lines_of_width_0 == 1 ? " line" : " lines") +
+                       ": a road of some width is hit more often (unsafe); give its width in metres, or NULL for that "
+                       "of --width");
   if (lines_of_given_width == 0 || line_width > 0.0) return;
   warnings.push_back(path + ": " + std::to_string(lines_of_given_width) +
                      (lines_of_given_width == 1 ? " line has no width and counts" : " lines have no width and count") +
@@ -279,6 +284,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
       if (width.value_or(0.0) > kWidestObject)
         state_->warnings.push_back(layer.label(*feature) + ": " + state_->width_field + " = " + text_of(*width) +
                                    " m, wider than any road: must be in metres");
+      if (width == 0.0) ++state_->lines_of_width_0;
       (width ? state_->lines_of_their_width : state_->lines_of_given_width) += 1;
     } else if (!layer.text(*feature, width_field).empty()) {
       ++state_->polygons_with_width;

@@ -8,6 +8,7 @@
 #include "io/files/json.hpp"
 #include "io/files/own_files.hpp"
 #include "io/gdal/dataset.hpp"
+#include "io/gdal/geopackage.hpp"
 #include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -64,7 +65,7 @@ std::optional<std::string> title_of(std::string name, const ProjectLayer& layer)
 std::string style_in(const fs::path& file, const std::string& layer) {
   try {
     const Dataset dataset = open_dataset(file.string(), GDAL_OF_VECTOR);
-    OGRLayer* styles = dataset->GetLayerByName("layer_styles");
+    OGRLayer* styles = dataset->GetLayerByName(kStylesTable);
     if (styles == nullptr) return {};
     while (const Feature row{styles->GetNextFeature()})
       if (row->GetFieldIndex("styleQML") >= 0 && row->GetFieldIndex("f_table_name") >= 0 &&

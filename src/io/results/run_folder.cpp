@@ -1,6 +1,9 @@
 #include "talus/io/results/run_folder.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <string_view>
+#include <utility>
 
 #include "acting_record.hpp"
 #include "io/files/json.hpp"
@@ -9,6 +12,7 @@
 #include "recorded_screens.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/base/version.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/gdal/vectors.hpp"
 #include "talus/io/results/hazard_file.hpp"
@@ -53,6 +57,15 @@ std::optional<std::string> status_note(const Json& run) {
   const std::string status = run.value("status", kComplete);
   if (status == kComplete) return std::nullopt;
   return "the run ended with status \"" + status + "\": do not use its results";
+}
+
+/// The first two numbers of a version: results of versions that share them are read alike. 0.0 if it is none.
+std::pair<int, int> series_of(std::string_view text) {
+  std::pair<int, int> series{0, 0};
+  const char* const end = text.data() + text.size();
+  const auto [point, fault] = std::from_chars(text.data(), end, series.first);
+  if (fault == std::errc() && point != end && *point == '.') std::from_chars(point + 1, end, series.second);
+  return series;
 }
 
 std::optional<std::string> recorded_coefficient_note(const Json& run) {
@@ -110,11 +123,17 @@ std::vector<std::string> notes_of_run(const std::filesystem::path& folder, const
   return understood(folder / "run.json", kRunAgain, [&] {
     std::vector<std::string> notes = warnings_for(run, use.frequency);
     for (const std::optional<std::string>& note :
-         {status_note(run), recorded_coefficient_note(run), standing_note(run, use.of_line),
-          wet_note(run, use.per_year), stand_note(run)})
+         {status_note(run), later_version_note(run.value("version", "")), recorded_coefficient_note(run),
+          standing_note(run, use.of_line), wet_note(run, use.per_year), stand_note(run)})
       if (note) notes.push_back(*note);
     return notes;
   });
+}
+
+std::optional<std::string> later_version_note(const std::string& written) {
+  if (!(series_of(version()) < series_of(written))) return std::nullopt;
+  return "run.json was written by Talus " + written + ", and this is the earlier version " + std::string(version()) +
+         ": what is new in it is not read; use that version or a later one";
 }
 
 std::optional<std::string> coefficient_note(double c) {

@@ -66,7 +66,8 @@ void check_files(const std::vector<const NamedFile*>& files, std::vector<std::st
     if (!name.fault.empty())
       faults.push_back(file->where + ": " + name.fault);
     else if (name.network ? VSIStatL(name_for_gdal(path).c_str(), &status) != 0 : name.file.empty())
-      faults.push_back(file->where + ": no such file (" + path + ")" + moved_hint(file->where));
+      faults.push_back(file->where + ": no such file (" + path + ")" + spelling_of_layer(path) +
+                       moved_hint(file->where));
   }
 }
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "io/gdal/layer.hpp"
 #include "io/gdal/off_map.hpp"
 #include "profile_keys.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/base/vector.hpp"
 
 namespace talus::io {
 namespace {
@@ -37,6 +39,41 @@ std::vector<double> shares_at_patches(const Surface& surface, const Eigen::Vecto
   }
   std::sort(shares.begin(), shares.end());
   return shares;
+}
+
+/// The first vertex on the way to which a line meets itself: it touches or crosses an earlier part, or turns by more
+/// than 150 degrees, as a line that is drawn there and back; nothing if it passes each place once.
+std::optional<int> vertex_back(const OGRLineString& line, double step) {
+  const double kBack = -std::cos(radians(30.0));
+  std::optional<int> found;
+  for (int i = 2; i < line.getNumPoints() && !found; ++i) {
+    const auto way = [&](int k) {
+      return Eigen::Vector2d(line.getX(k) - line.getX(k - 1), line.getY(k) - line.getY(k - 1));
+    };
+    const Eigen::Vector2d in = way(i - 1), out = way(i);
+    const bool long_enough = in.norm() > step && out.norm() > step;  // else a slip of the hand
+    if (long_enough && in.dot(out) < kBack * in.norm() * out.norm()) found = i;
+  }
+  const auto meets_itself = [&](int last) {
+    OGRLineString part;
+    for (int i = 0; i <= last; ++i) part.addPoint(line.getX(i), line.getY(i));
+    return part.get_IsClosed() != 0 || part.IsSimple() == 0;
+  };
+  int whole = 1, crossed = found.value_or(line.getNumPoints()) - 1;
+  if (!OGRGeometryFactory::haveGEOS() || crossed < 2 || !meets_itself(crossed)) return found;
+  while (crossed - whole > 1) (meets_itself((whole + crossed) / 2) ? crossed : whole) = (whole + crossed) / 2;
+  return crossed;
+}
+
+/// Throws InputError if the line passes a place twice: x would stand for two grounds of one place.
+void refuse_way_back(const OGRLineString& line, double step, const std::string& path, const Terrain& terrain) {
+  const auto vertex = vertex_back(line, step);
+  if (!vertex) return;
+  const MapPlace place(terrain.geo, terrain.heights.grid);
+  throw InputError(path + ": the line runs back over itself or crosses itself before its vertex " +
+                   std::to_string(*vertex + 1) + " (" + with_decimals(place.x(line.getX(*vertex)), 1) + ", " +
+                   with_decimals(place.y(line.getY(*vertex)), 1) +
+                   "), must pass each place once: draw it down the fall line");
 }
 
 }  // namespace
@@ -82,6 +119,7 @@ ProfileLine read_profile_line(const std::string& path, const Terrain& terrain, c
       throw InputError(layer.label(*feature) + ": is no single line, must be one line from the top to the bottom");
     if (!plan.empty()) throw InputError(path + ": has several lines, must have one: a profile is one line");
     const OGRLineString& line = parts.lines.front();
+    refuse_way_back(line, spec.profile->step, path, terrain);
     for (int i = 0; i < line.getNumPoints(); ++i) plan.emplace_back(line.getX(i), line.getY(i));
   }
   if (plan.size() < 2) throw InputError(path + ": has no line, must have one");

@@ -13,6 +13,7 @@
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/block_class.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
+#include "talus/simulate/scenario/doubled_points.hpp"
 #include "talus/simulate/scenario/retreat.hpp"
 #include "talus/terrain/source_slope.hpp"
 
@@ -199,11 +200,11 @@ std::vector<const SourceCell*> cells_by_place(const Scenario& s) {
   return cells;
 }
 
-/// One line if several features release the same cells; empty if not, or if each feature has its own events.
+/// One line if several features release the same cells; empty if not.
 std::string overlap_warning(const Scenario& s) {
   constexpr double kNoticed = 0.01;  // of the cells: two lines that meet share one
   const Sources found = sources_of(s);
-  if (found.features || s.features.size() < 2) return {};
+  if (s.features.size() < 2) return {};
   const std::vector<const SourceCell*> cells = cells_by_place(s);
   const auto same = [&](std::size_t i) { return cells[i]->x == cells[i - 1]->x && cells[i]->y == cells[i - 1]->y; };
   std::uint64_t places = cells.empty() ? 0 : 1, shared = 0;
@@ -221,6 +222,7 @@ std::string overlap_warning(const Scenario& s) {
          " cells lie in more than one feature and release the blocks of each" +
          (found.area ? ", so that frequency.per_area counts " + with_digits(s.frequency.per_area * again, 3) +
                            " events per year more than once"
+          : found.features    ? ", so that the events per year of each count there"
           : found.count() > 0 ? ", so that they get a larger share of the events"
                               : "") +
          ": join the features or cut one out of the other, unless each is meant to release its own blocks there";
@@ -257,14 +259,16 @@ std::vector<double> class_frequencies(const Scenario& s) {
 }
 
 std::vector<std::string> frequency_warnings(const Scenario& s) {
-  std::vector<std::string> warnings{rare_class_warning(s), overlap_warning(s), area_warning(s), retreat_warning(s)};
+  std::vector<std::string> warnings{rare_class_warning(s), overlap_warning(s), doubled_points_warning(s),
+                                    area_warning(s), retreat_warning(s)};
   std::erase(warnings, "");
   return warnings;
 }
 
 bool is_of_frequencies(const std::string& warning) {
   return warning.starts_with(kOverlapWarning) || warning.starts_with(kAreaWarning) ||
-         warning.starts_with(kRetreatWarning) || warning.find(kRareClasses) != std::string::npos;
+         warning.starts_with(kDoubledPoints) || warning.starts_with(kRetreatWarning) ||
+         warning.find(kRareClasses) != std::string::npos;
 }
 
 std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t rounds) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "talus/io/files/made_folders.hpp"
 #include "talus/io/files/staged_path.hpp"
@@ -15,10 +16,12 @@ namespace talus::io {
 class OutputFile {
  public:
   /// @param extension  ".gpkg": what the name must end in
-  /// @param overwrite  a file of this name may be replaced, if all its layers are of `talus sources` or `check --pits`
+  /// @param overwrite  a GeoPackage of this name may be replaced, if Talus has written it with these layers alone
+  /// @param layers     that the command writes
   /// Throws InputError if the name has another extension or is taken, or if its folder cannot be made or
   /// written.
-  OutputFile(const std::filesystem::path& path, const std::string& extension, bool overwrite);
+  OutputFile(const std::filesystem::path& path, const std::string& extension, bool overwrite,
+             const std::vector<std::string>& layers = {});
 
   /// Where to write until `commit`.
   const std::filesystem::path& temporary() const { return staged_.hidden(); }

@@ -8,6 +8,10 @@ namespace talus::io {
 /// Throws InputError if a name for results is a link to something that is not there.
 void refuse_dangling_link(const std::filesystem::path& path);
 
+/// The file or folder that a name for results stands for: what is written under a link goes to the place it leads to,
+/// and the link stays.
+std::filesystem::path behind_links(const std::filesystem::path& path);
+
 /// Throws InputError if no file can be written into a folder: before the work, not after it. @param folder  empty: the
 /// current one
 void refuse_unwritable(const std::filesystem::path& folder);

@@ -14,6 +14,10 @@ struct NamedLayer {
 /// Takes such a name apart. A name without "|layername=" and its like is a file.
 NamedLayer named_layer(const std::string& name);
 
+/// "; its layer is named by ..." for a name that is none of a file, if the name begins with that of a file and a "|"
+/// ("cliffs.gpkg|layer=north"); else empty.
+std::string spelling_of_layer(const std::string& name);
+
 /// The file of such a name.
 inline std::string file_of_layer(const std::string& name) {
   return named_layer(name).file;

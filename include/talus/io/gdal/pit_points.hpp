@@ -1,11 +1,15 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "talus/io/origin/origin.hpp"
 #include "talus/terrain/raster.hpp"
 
 namespace talus::io {
+
+/// The layer of the file of pits.
+inline const std::vector<std::string> kPitLayers{"pits"};
 
 /// Writes the true pits of a terrain (`pit_depth`) and its dammed cells (`dam_height`) as the layer `pits` of a
 /// GeoPackage: the centre of each cell, row by row from the north-west, with kind (pit or dammed), depth_m below the

@@ -3,10 +3,14 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "talus/io/gdal/rasters.hpp"
 
 namespace talus::io {
+
+/// The layers of the file of candidate sources.
+inline const std::vector<std::string> kSourceLayers{"source_polygons", "source_points"};
 
 /// Summary of the source cells that were found and written.
 struct SourceCells {

@@ -18,10 +18,14 @@ struct ResultsUse {
 
 /// Notes for everyone who uses the results of a run, from its run.json:
 ///   that the sizes of blocks or the ground are no fitted ones, that sources release nothing or overlap;
-///   that its status is not complete; `coefficient_note`;
+///   that its status is not complete; `later_version_note`; `coefficient_note`;
 ///   that the figures hold only with the barriers and the forest of the run, and on a wet day.
 /// None if there is no run.json that can be read. Throws InputError if it is none of a run.
 std::vector<std::string> notes_of_run(const std::filesystem::path& folder, const ResultsUse& use);
+
+/// That a later version than this one wrote results: later by its first or second number. Nothing if none did.
+/// @param written  the version in run.json, such as "0.1.0"
+std::optional<std::string> later_version_note(const std::string& written);
 
 /// One line that energies rest on c (model.deformation_coefficient), and which way is safe; nothing if c is low.
 /// docs/barrier.md, "The value of c".

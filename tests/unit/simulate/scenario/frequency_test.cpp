@@ -246,10 +246,29 @@ TEST(FrequencyWarnings, CellsOfSeveralFeatures) {
   expect("a larger share of the events");
   s.frequency = {};
   expect("release the blocks of each: join the features");
-  for (SourceFeature& feature : s.features) feature.frequency = 0.1;  // each has its own events
-  EXPECT_TRUE(frequency_warnings(s).empty());
-  for (SourceFeature& feature : s.features) feature.frequency = kNotGiven;
+  for (SourceFeature& feature : s.features) feature.frequency = 0.1;
+  expect("so that the events per year of each count there");
+}
+
+TEST(FrequencyWarnings, PointsThatAreThereTwice) {
+  Scenario s = plane(60.0, {0, 0, 1, 1, 2});
   for (SourceCell& cell : s.sources) cell.point = true;
+  for (std::size_t i = 0; i < s.features.size(); ++i) {
+    s.features[i].id = static_cast<std::int64_t>(i + 7);
+    s.features[i].name = std::to_string(i + 7);  // its number, as it has no name
+  }
+  EXPECT_TRUE(frequency_warnings(s).empty());
+  for (const std::size_t cell : {2U, 4U}) s.sources[cell].x = s.sources[0].x;
+  const auto expect = [&](const std::string& words) {
+    const std::vector<std::string> warnings = frequency_warnings(s);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_THAT(warnings.front(), testing::StartsWith("points of sources: " + words));
+    EXPECT_TRUE(is_of_frequencies(warnings.front()));
+  };
+  expect("2 points have the place and the fields of another (FID 8, 9)");
+  s.features[2].velocity.z() = 1.0;
+  expect("1 point has the place and the fields of another (FID 8)");
+  s.features[1].name = "cliff";
   EXPECT_TRUE(frequency_warnings(s).empty());
 }
 
