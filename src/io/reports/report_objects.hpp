@@ -19,7 +19,7 @@ struct ObjectsPart {
     double frequency = 0.0, low = 0.0;  ///< [1/year]
     std::optional<double> high;         ///< nothing where a part of the object is not assessed
     double without_height = 0.0;        ///< that part: a share, where the DEM has no height
-    std::vector<std::string> years;                 ///< return period by threshold, with its bounds [years], in words
+    std::vector<std::string> years;     ///< return period by threshold, with its bounds [years], in words
     std::vector<Point> curve;
     /// Numbers of its class, and of those at the bounds of the frequencies; nothing in a table without classes.
     std::optional<std::size_t> hazard_class = {}, lowest_class = {}, highest_class = {};

@@ -74,7 +74,8 @@ TEST(BlockSizes, WarnsOutsideAndNotInside) {
 }
 
 TEST(BlockSizes, SaysWhatIsNotKnownWhatBreaksAndWhatIsScaled) {
-  EXPECT_NE(warning(of_diameter(1.2, 1.2), "quarry-face-2d").find("to are not known: quarry-face-2d"), std::string::npos);
+  EXPECT_NE(warning(of_diameter(1.2, 1.2), "quarry-face-2d").find("to are not known: quarry-face-2d"),
+            std::string::npos);
   Scenario scenario = of_diameter(1.2, 1.2);
   scenario.effects.block_mass.roughness = 0.5;
   EXPECT_EQ(warning(scenario), "");
