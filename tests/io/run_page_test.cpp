@@ -230,6 +230,23 @@ TEST(Escaping, EveryFieldOfEverySection) {
   EXPECT_THAT(page_of({h, h, h}, Markup() + h), HasSubstr("<title>Talus: &lt;script&gt;"));
 }
 
+TEST(BarrierNotes, OfAllBarriersAreToldOnce) {
+  const auto count = [](const std::string& text, const std::string& word) {
+    std::size_t found = 0;
+    for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; ++at) ++found;
+    return found;
+  };
+  BarrierPart north, south;
+  north.screen = "north", south.screen = "south";
+  north.notes = {"of the run", "of the north"};
+  south.notes = {"of the south", "of the run"};
+  const std::string page = barriers_html({north, south}).text();
+  for (const char* note : {"Note: of the run<", "Note: of the north<", "Note: of the south<"})
+    EXPECT_EQ(count(page, note), 1U) << note;
+  EXPECT_LT(page.find("of the run"), page.find("Barrier at north"));
+  EXPECT_EQ(count(barriers_html({north}).text(), "Note: of the run<"), 1U);
+}
+
 /// Of an object whose larger part is not assessed nothing is told that looks safe.
 TEST(ObjectsTable, SaysWhatIsNotAssessed) {
   ObjectsPart::Object object{"km 1.6", "cliff", 0.0, 0.0, std::nullopt, 0.67, {"not known"}, {}};

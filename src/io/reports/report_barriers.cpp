@@ -161,7 +161,21 @@ Markup once_in_table(const BarrierPart& part) {
          "trajectories for a bound.</p>\n";
 }
 
-Markup barrier_html(const BarrierPart& part) {
+Markup note_html(const std::string& note) {
+  return "<p class='look'>Note: "_html + note + "</p>\n";
+}
+
+/// Notes that all barriers have, as those of the run: told once.
+std::vector<std::string> common_notes(const std::vector<BarrierPart>& parts) {
+  if (parts.size() < 2) return {};
+  std::vector<std::string> common = parts.front().notes;
+  std::erase_if(common, [&](const std::string& note) {
+    return std::ranges::any_of(parts, [&](const BarrierPart& p) { return std::ranges::count(p.notes, note) == 0; });
+  });
+  return common;
+}
+
+Markup barrier_html(const BarrierPart& part, const std::vector<std::string>& told) {
   const bool pieces = part.crossings > part.blocks;
   Markup html = "<h3>Barrier at "_html + part.screen + "</h3>\n<p>" + grouped(part.crossings) +
                 (pieces ? " crossings (blocks and pieces) of " + grouped(part.blocks) + " blocks; every block and piece"
@@ -176,7 +190,8 @@ Markup barrier_html(const BarrierPart& part) {
         "<figure>"_html + stretch_chart(part, true) + "<br>" + stretch_chart(part, false) +
         "<figcaption>Each stretch designed by its own crossings; red: more than the design of the whole line; ?: too "
         "few crossings for a design; dashed: the whole line.</figcaption></figure>\n";
-  for (const std::string& note : part.notes) html += "<p class='look'>Note: "_html + note + "</p>\n";
+  for (const std::string& note : part.notes)
+    if (std::ranges::count(told, note) == 0) html += note_html(note);
   return html;
 }
 
@@ -229,7 +244,9 @@ Markup standing_html(const RunFacts& run) {
 Markup barriers_html(const std::vector<BarrierPart>& parts) {
   if (parts.empty()) return {};
   Markup html = "<h2>Barriers</h2>\n"_html;
-  for (const BarrierPart& part : parts) html += barrier_html(part);
+  const std::vector<std::string> common = common_notes(parts);
+  for (const std::string& note : common) html += note_html(note);
+  for (const BarrierPart& part : parts) html += barrier_html(part, common);
   return html;
 }
 
