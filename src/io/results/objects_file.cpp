@@ -5,10 +5,10 @@
 #include <map>
 #include <set>
 
-#include "io/gdal/geopackage.hpp"
 #include "io/gdal/layer.hpp"
 #include "io/gdal/off_map.hpp"
 #include "io/gdal/typed_cells.hpp"
+#include "object_rows.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
@@ -72,44 +72,6 @@ std::unique_ptr<OGRGeometry> geometry_of(const Parts& parts, double west, double
     all->addGeometry(&line);
   }
   return all;
-}
-
-/// Figures of an object, with the names of their columns. NaN and infinity are written as NULL or an empty field.
-using Figures = std::vector<std::pair<std::string, double>>;
-
-bool is_upper_bound(const std::string& column) {
-  return column.ends_with("_upper");
-}
-
-/// @param without_height  share of the object where the DEM has no height: if that is all, its figures are not known,
-///                        although blocks may touch its rim; if it is some of it, the upper bounds are not known
-Figures figures_of(const HazardRules& rules, const ObjectHits& hits, double without_height,
-                   const HazardMatrix& matrix) {
-  const HazardCurve curve(rules, hits.largest), entry(rules, hits.entry);
-  const std::vector<double>& thresholds = rules.bins.thresholds();
-  Figures figures{{"trajectories", static_cast<double>(hits.trajectories)}};
-  const auto add = [&figures](const std::string& name, const Bounded& b) {
-    figures.emplace_back(name, b.value);
-    figures.emplace_back(name + "_lower", b.low);
-    figures.emplace_back(name + "_upper", b.high);
-  };
-  add("frequency", curve.passage());
-  figures.emplace_back("return_period", return_period(curve.passage()).value);
-  for (std::size_t i = 0; i < thresholds.size(); ++i) {
-    add("frequency_" + text_of(thresholds[i]), curve.exceedance(i));
-    figures.emplace_back("return_period_" + text_of(thresholds[i]), return_period(curve.exceedance(i)).value);
-    add("entry_" + text_of(thresholds[i]), entry.exceedance(i));
-  }
-  for (const double t : matrix.years) add("energy_T" + text_of(t), curve.energy_once_in(t));
-  std::vector<Bounded> frequencies{curve.passage()};
-  for (const double energy : matrix.energies) frequencies.push_back(curve.exceedance_of(energy));
-  const BoundedClass found = class_of(matrix, frequencies);
-  add("hazard_class",
-      {static_cast<double>(found.value), static_cast<double>(found.low), static_cast<double>(found.high)});
-  for (auto& [name, value] : figures)
-    if (!(without_height < 1.0) || (without_height >= kNoticedWithoutHeight && is_upper_bound(name))) value = kNotGiven;
-  figures.emplace_back("share_without_height", without_height);
-  return figures;
 }
 
 /// Throws InputError if the layer has fields that differ only in their case: a GeoPackage cannot hold copies of both.
@@ -338,145 +300,11 @@ std::string ObjectLayer::names_text() const {
 
 namespace {
 
-/// Attributes of the input that are copied: those that are not named as a column of the results.
-std::vector<int> copied_attributes(OGRFeature& model, const Figures& figures) {
-  std::vector<std::string> own{"object", "sources", "fid", "geom"};
-  for (const auto& [name, value] : figures) own.push_back(name);
-  std::vector<int> copied;
-  for (int i = 0; i < model.GetFieldCount(); ++i) {
-    const char* name = model.GetFieldDefnRef(i)->GetNameRef();
-    if (std::ranges::none_of(own, [&](const std::string& one) { return EQUAL(one.c_str(), name); }))
-      copied.push_back(i);
-  }
-  return copied;
-}
-
 /// How often an object is hit that nothing hits per year.
 std::string never_hit_text(const ObjectHits& hits) {
   if (hits.trajectories == 0) return "hit by no block of this run";
   return "hit by " + std::to_string(hits.trajectories) + (hits.trajectories == 1 ? " block" : " blocks, all") +
          " of sources or block classes with a frequency of 0";
-}
-
-/// The value of an attribute as text; that of a list in JSON; empty if there is none.
-std::string attribute_text(const OGRFeature& feature, int field) {
-  if (feature.IsFieldSetAndNotNull(field) == 0) return "";
-  const std::unique_ptr<char, void (*)(void*)> list(feature.GetFieldAsSerializedJSon(field), VSIFree);
-  return list ? list.get() : feature.GetFieldAsString(field);
-}
-
-/// The type of the column of an attribute. GeoPackages have no lists: these become text.
-OGRFieldType column_type(OGRFieldType type) {
-  const bool is_list =
-      type == OFTStringList || type == OFTRealList || type == OFTIntegerList || type == OFTInteger64List;
-  return is_list ? OFTString : type;
-}
-
-/// What the layer and the table hold of an object.
-struct ObjectRow {
-  const std::string& name;
-  OGRFeature& from;  // of the input
-  const Figures& figures;
-  const std::string& sources;
-};
-
-/// The layer `objects`: name of the object, attributes of the input, figures, sources.
-class ObjectsWriter {
- public:
-  ObjectsWriter(const std::filesystem::path& file, const LoadedScenario& loaded, OGRFeature& model,
-                const Figures& figures)
-      : file_(file, loaded.geo), attributes_(copied_attributes(model, figures)) {
-    std::vector<GeoPackage::Column> columns{{"object", OFTString}};
-    for (const int i : attributes_)
-      columns.push_back({model.GetFieldDefnRef(i)->GetNameRef(), column_type(model.GetFieldDefnRef(i)->GetType())});
-    for (const auto& [name, value] : figures) columns.push_back({name.c_str(), OFTReal});
-    columns.push_back({"sources", OFTString});
-    layer_ = file_.add_layer("objects", wkbUnknown, columns);
-  }
-
-  void write(const ObjectRow& object, const OGRGeometry& geometry) {
-    const GdalMessages messages;
-    const Feature row(OGRFeature::CreateFeature(layer_->GetLayerDefn()));
-    row->SetField(0, object.name.c_str());
-    int next = 1;
-    for (const int i : attributes_) {
-      if (object.from.IsFieldSetAndNotNull(i) != 0) copy(object.from, i, *row, next);
-      ++next;
-    }
-    for (const auto& [name, value] : object.figures) {
-      if (std::isfinite(value)) row->SetField(next, value);
-      ++next;
-    }
-    row->SetField(next, object.sources.c_str());
-    row->SetGeometry(&geometry);
-    file_.append(layer_, *row);
-  }
-
-  void finish(StyledLayer style) {
-    file_.set_style("objects", style_of(style));
-    file_.finish();
-  }
-
- private:
-  static void copy(const OGRFeature& from, int field, OGRFeature& to, int column) {
-    if (to.GetFieldDefnRef(column)->GetType() == OFTString)
-      to.SetField(column, attribute_text(from, field).c_str());
-    else
-      to.SetField(column, from.GetRawFieldRef(field));
-  }
-
-  GeoPackage file_;
-  std::vector<int> attributes_;
-  OGRLayer* layer_ = nullptr;
-};
-
-/// The table objects.csv: the layer `objects` without its geometry.
-class ObjectsTable {
- public:
-  void add(const ObjectRow& object) {
-    const std::vector<int> attributes = copied_attributes(object.from, object.figures);
-    if (text_.empty()) head(object.from, attributes, object.figures);
-    text_ += csv_field(object.name);
-    for (const int i : attributes) text_ += ',' + csv_field(attribute_text(object.from, i));
-    for (const auto& [name, value] : object.figures) text_ += ',' + csv_field(value);
-    text_ += ',' + csv_field(object.sources) + '\n';
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  void head(OGRFeature& from, const std::vector<int>& attributes, const Figures& figures) {
-    text_ = "object";
-    for (const int i : attributes) text_ += ',' + csv_field(std::string(from.GetFieldDefnRef(i)->GetNameRef()));
-    for (const auto& [name, value] : figures) text_ += ',' + name;
-    text_ += ",sources\n";
-  }
-
-  std::string text_;
-};
-
-/// Point i of a curve, with the bounds of objects.csv where that has it: at all hits, and at a threshold.
-Bounded curve_point(const HazardCurve& curve, const EnergyBins& bins, std::size_t i) {
-  if (i == 0) return curve.passage();
-  const auto threshold = bins.threshold_at(bins.edge(curve.first() + static_cast<int>(i)));
-  return threshold ? curve.exceedance(*threshold) : curve.at(i);
-}
-
-/// @param bounded  false: the upper bounds are not known
-std::string curve_rows(const std::string& object, const HazardCurve& curve, const EnergyBins& bins, bool bounded) {
-  std::string rows;
-  for (std::size_t i = 0; i < curve.size(); ++i) {
-    const int bin = curve.first() + static_cast<int>(i);
-    const double energy = bins.edge(bin);
-    // Each energy has one row: two bins begin with it where a threshold is an edge. The first row is of all hits.
-    if (i > 0 && (energy == bins.edge(curve.first()) || (i + 1 < curve.size() && energy == bins.edge(bin + 1))))
-      continue;
-    const Bounded f = curve_point(curve, bins, i);
-    rows += object + ',' + csv_field(energy);
-    for (const double value : {f.value, f.low, bounded ? f.high : kNotGiven, 1.0 / f.value})
-      rows += ',' + csv_field(value);
-    rows += '\n';
-  }
-  return rows;
 }
 
 }  // namespace
