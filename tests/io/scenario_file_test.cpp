@@ -194,6 +194,21 @@ TEST_F(ScenarioFile, DiameterOfTheFeatureThenTheFlagThenTheScenario) {
   EXPECT_EQ(origin(l, "sources.attributes.diameter"), "attribute diameter of sources.gpkg");
 }
 
+/// A sphere of 1 m has pi/6 m3, one of 2 m eight times as much.
+TEST_F(ScenarioFile, ClassesByVolume) {
+  const auto classes = [&](const std::string& text) {
+    return load(std::string(kFiles) + "[blocks]\ndiameter = [" + text + "]\n").scenario.blocks.classes;
+  };
+  const auto found = classes("{ volume = [0.5235987755982988, 4.188790204786391], weight = 3 }, { diameter = 0.5 }");
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NEAR(found[0].diameter.low, 1.0, 1e-15);
+  EXPECT_NEAR(found[0].diameter.high, 2.0, 1e-15);
+  EXPECT_EQ(found[0].weight, 3.0);
+  expect_input_error([&] { classes("{ diameter = 1, volume = 1 }"); }, {"has a diameter and a volume, must have one"});
+  expect_input_error([&] { classes("{ weight = 1 }"); }, {"has no diameter and no volume, must have one"});
+  expect_input_error([&] { classes("{ volume = 70000 }"); }, {"volume = 70000: must be 1e-06 to 65000 m3"});
+}
+
 TEST_F(ScenarioFile, FlagsAlone) {
   RunFlags flags;
   flags.dem = path("dem.tif");

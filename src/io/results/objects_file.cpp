@@ -1,7 +1,6 @@
 #include "talus/io/results/objects_file.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 

@@ -230,11 +230,13 @@ class SpecReader {
     }
     TableReader entry(&item, "blocks.diameter", file_, faults_);
     BlockClass block;
-    if (const auto range = entry.range("diameter", bounds_of("blocks.diameter")))
-      block.diameter = *range;
-    else if (item.find("diameter") == nullptr)
-      faults_.push_back(file_ + ":" + std::to_string(item.line) +
-                        ": a class of blocks.diameter has no diameter, must have one");
+    if (const auto diameter = entry.range("diameter", bounds_of("blocks.diameter"))) block.diameter = *diameter;
+    if (const auto volume = entry.range("volume", bounds_of("blocks.volume")))
+      block.diameter = {diameter_of(volume->low), diameter_of(volume->high)};
+    if ((item.find("diameter") == nullptr) == (item.find("volume") == nullptr))
+      faults_.push_back(file_ + ":" + std::to_string(item.line) + ": a class of blocks.diameter has " +
+                        (item.find("volume") == nullptr ? "no diameter and no volume" : "a diameter and a volume") +
+                        ", must have one of them");
     block.weight = entry.number("weight", bounds_of("blocks.weight")).value_or(1.0);
     block.frequency = entry.number("frequency", bounds_of("blocks.frequency")).value_or(kNotGiven);
     entry.finish();

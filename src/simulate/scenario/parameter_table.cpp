@@ -103,10 +103,11 @@ constexpr std::array<Field<Scenario>, 10> kScenario{{
      [](Scenario& s, double v) { s.output.paths = static_cast<std::uint32_t>(v); }},
 }};
 
-constexpr std::array<Bounds, 20> kLists{{
+constexpr std::array<Bounds, 21> kLists{{
     {"blocks.diameter", "m", "diameter of the sphere of equal volume", 0.01, 50.0},
     {"blocks.weight", "1", "share of a class of blocks, relative to the others", 0.0, 1e9, kAbove},
     {"blocks.frequency", "1/year", "events per year of a class of blocks", 0.0, 1e6},
+    {"blocks.volume", "m3", "of the blocks of a class, in place of the diameter", 1e-6, 65000.0},
     {"blocks.volume_min", "m3", "smallest volume of the power law", 1e-6, 65000.0},
     {"blocks.volume_max", "m3", "largest volume of the power law", 1e-6, 65000.0},
     {"blocks.exponent", "1", "b in N(>= V) ~ V^-b", 1e-6, 10.0},
