@@ -1,6 +1,7 @@
 #include "talus/simulate/tally/cell_record.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "talus/base/expect.hpp"
 #include "talus/simulate/tally/checked_sum.hpp"
@@ -23,6 +24,52 @@ inline Sums sums_of(std::span<const float> values, double units) {
     most = std::max(most, values[i]);
   }
   return {sum, most};
+}
+
+/// Sum, in fixed point, and range of the values of a quantity.
+struct Summary {
+  std::int64_t sum = 0;
+  float least = std::numeric_limits<float>::infinity(), largest = 0.0F;
+};
+
+/// All quantities in one loop: most cells have few values, and the end of a loop costs more than a value.
+PerQuantity<Summary> summaries_of(const CellValues& values) {
+  PerQuantity<const float*> lists{};
+  for_each_quantity([&](auto q) { lists[q] = values.lists[q].data(); });
+  PerQuantity<Summary> summaries{};
+  for (std::size_t i = 0; i < values.count; ++i)
+    for_each_quantity([&](auto q) {
+      constexpr double kUnits = 1.0 / kQuantityTable[q].fixed_point;
+      const float value = lists[q][i];
+      summaries[q].sum += fixed_point(value, kUnits);
+      summaries[q].least = std::min(summaries[q].least, std::max(LogHistogram::kFloor, value));
+      summaries[q].largest = std::max(summaries[q].largest, value);
+    });
+  return summaries;
+}
+
+/// Counts the values of all quantities in one loop: a count waits for the one before it only in its own histogram.
+void count_together(PerQuantity<LogHistogram>& histograms, const PerQuantity<std::span<const float>>& values) {
+  PerQuantity<const float*> lists{};
+  PerQuantity<LogHistogram::Narrow> counts{};
+  std::size_t most = values[0].size();
+  for_each_quantity([&](auto q) {
+    lists[q] = values[q].data();
+    counts[q] = histograms[q].narrow();
+    most = counts[q].counts == nullptr ? 0 : std::min(most, values[q].size());
+  });
+  std::size_t i = 0;
+  for (; i < most; ++i) {
+    PerQuantity<unsigned char*> here{};
+    bool full = false;
+    for_each_quantity([&](auto q) {
+      here[q] = &counts[q].of(lists[q][i]);
+      full = full || *here[q] == 0xFFU;
+    });
+    if (full) break;
+    for_each_quantity([&](auto q) { ++*here[q]; });
+  }
+  for_each_quantity([&](auto q) { histograms[q].count_all(values[q].subspan(i)); });
 }
 
 constexpr double kTotalUnit = kQuantityTable[index_of(Quantity::Energy)].fixed_point;
@@ -75,16 +122,18 @@ double CellRecord::mean(Quantity quantity) const {
 
 PerQuantity<float> CellRecord::add(const CellValues& values) {
   add_checked(passages, static_cast<std::uint32_t>(values.count));  // no other count of the cell is larger
+  const PerQuantity<Summary> summaries = summaries_of(values);
   PerQuantity<float> largest{};
+  PerQuantity<std::span<const float>> left{};
   for_each_quantity([&](auto q) {
-    constexpr double kUnits = 1.0 / kQuantityTable[q].fixed_point;
-    const std::span<const float> list(values.lists[q].data(), values.count);
-    const Sums sums = sums_of(list, kUnits);
-    add_checked(sum[q], sums.sum);
-    largest[q] = sums.largest;
-    maximum[q] = std::max(maximum[q], sums.largest);
-    histogram[q].add(list);
+    const Summary& summary = summaries[q];
+    add_checked(sum[q], summary.sum);
+    largest[q] = summary.largest;
+    maximum[q] = std::max(maximum[q], summary.largest);
+    left[q] = histogram[q].make_room({values.lists[q].data(), values.count}, summary.least,
+                                     std::max(LogHistogram::kFloor, summary.largest));
   });
+  count_together(histogram, left);
   return largest;
 }
 

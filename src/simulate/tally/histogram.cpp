@@ -1,7 +1,6 @@
 #include "talus/simulate/tally/histogram.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -12,14 +11,6 @@
 namespace talus {
 namespace {
 
-constexpr int kShift = 19;  // a float keeps 23 bits after the leading one: 4 of them number the bins of a doubling
-constexpr int kKeys = 1 << (31 - kShift);  // keys of positive floats are below this
-
-int key_of(float value) {
-  return static_cast<int>(std::bit_cast<std::uint32_t>(value > LogHistogram::kFloor ? value : LogHistogram::kFloor) >>
-                          kShift);
-}
-
 unsigned char* zeros(MemoryPolicy memory, std::size_t bytes) {
   return static_cast<unsigned char*>(std::memset(memory.allocate(bytes), 0, bytes));
 }
@@ -28,10 +19,6 @@ unsigned char* zeros(MemoryPolicy memory, std::size_t bytes) {
 double rank_of(double share, std::uint64_t total) {
   const auto count = static_cast<double>(total);
   return std::clamp(std::ceil(share * count), 1.0, count);
-}
-
-double edge_of(int key) {
-  return std::bit_cast<float>(static_cast<std::uint32_t>(key) << kShift);
 }
 
 }  // namespace
@@ -135,11 +122,6 @@ void LogHistogram::spill(int low_key, int high_key) {
 }
 
 void LogHistogram::add(std::span<const float> values) {
-  if (values.empty()) return;
-  if (counts_ == nullptr && few_count_ + values.size() <= kFew) {
-    for (const float value : values) few_[few_count_++] = static_cast<std::uint16_t>(key_of(value));
-    return;
-  }
   float least = std::numeric_limits<float>::infinity(), largest = kFloor;
 #pragma omp simd reduction(min : least) reduction(max : largest)
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -147,24 +129,28 @@ void LogHistogram::add(std::span<const float> values) {
     least = std::min(least, value);
     largest = std::max(largest, value);
   }
-  const int low = key_of(least), high = key_of(largest);  // a key grows with its value
-  if (few_count_ > 0 || low < first_ || high >= first_ + size_) spill(low, high);
-  count_all(values);
+  count_all(make_room(values, least, largest));
 }
 
-/// Counts values whose bins have room. Local copies of the members are faster: the compiler must assume that a byte
-/// written to the counts may change any member.
+std::span<const float> LogHistogram::make_room(std::span<const float> values, float least, float largest) {
+  if (values.empty()) return {};
+  if (counts_ == nullptr && few_count_ + values.size() <= kFew) {
+    for (const float value : values) few_[few_count_++] = static_cast<std::uint16_t>(key_of(value));
+    return {};
+  }
+  const int low = key_of(least), high = key_of(largest);  // a key grows with its value
+  if (few_count_ > 0 || low < first_ || high >= first_ + size_) spill(low, high);
+  return values;
+}
+
 void LogHistogram::count_all(std::span<const float> values) {
   auto value = values.begin();
-  if (width_ == 1) {
-    unsigned char* const counts = counts_;
-    const int first = first_;
+  if (const Narrow counts = narrow(); counts.counts != nullptr)
     for (; value != values.end(); ++value) {
-      unsigned char& here = counts[std::max(0, key_of(*value) - first)];
+      unsigned char& here = counts.of(*value);
       if (here == 0xFFU) break;
       ++here;
     }
-  }
   for (; value != values.end(); ++value) add_key(key_of(*value));
 }
 

@@ -57,9 +57,30 @@ std::array<std::uint32_t, kRegionCells + 1> starts_of_cells(const VisitList& vis
 
 /// Prefetches memory that is needed soon: records are scattered, and waiting for them would take most of the time.
 void prefetch(const void* memory, std::size_t bytes) {
-  if (memory == nullptr) return;  // a histogram that has no counts yet
-  for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(memory) + i, 1);
+  if (bytes == 0) return;  // a histogram that has no counts yet
+  const char* const begin = static_cast<const char*>(memory);
+  for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(begin + i, 1);
+  __builtin_prefetch(begin + bytes - 1, 1);  // the end may lie in one line more
 }
+
+/// Sums of whole lengths by the number of energy thresholds that they are above: one addition for each length.
+class LengthsByLevel {
+ public:
+  explicit LengthsByLevel(std::size_t levels) : levels_(levels) { std::fill_n(sums_.begin(), levels, 0); }
+  void add(std::size_t level, std::int64_t length) { sums_[level] += length; }
+  /// Adds the lengths above each threshold. Returns the sum of all.
+  std::int64_t add_to(std::int64_t* above) {
+    for (std::size_t level = levels_ - 1; level > 0; --level) {
+      above[level - 1] += sums_[level];
+      sums_[level - 1] += sums_[level];
+    }
+    return sums_[0];
+  }
+
+ private:
+  std::array<std::int64_t, 64> sums_;
+  std::size_t levels_;
+};
 
 /// The lengths of a visit [m]: all counted parts, then those above each threshold, as far as there are some.
 std::span<const float> lengths_of(const Visit& visit, std::span<const float> mixed, std::size_t levels,
@@ -158,6 +179,7 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
   Region& region = regions_[index];
   TALUS_EXPECT(batch.levels() <= 1 + energy_thresholds(), "a batch has no other thresholds than the tally");
   TALUS_EXPECT(visits.totals.size() == (keep_total_ ? visits.visits.size() : 0), "each visit has its total energy");
+  prefetch(visits.lengths.data(), visits.lengths.size() * sizeof(float));
   work.sort(visits);
   const std::span<const Visit> all = std::span(work.sorted).first(visits.visits.size());
   std::vector<Group>& groups = work.groups;
@@ -177,13 +199,13 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
   if (keep_total_) region.make_totals();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (i + 16 < groups.size()) prefetch(&region.records[groups[i + 16].record], sizeof(CellRecord));
-    if (i + 8 < groups.size())
-      for (const LogHistogram& h : region.records[groups[i + 8].record].histogram) prefetch(h.counts(), 128);
     if (i + 8 < groups.size()) {
       const std::size_t soon = groups[i + 8].record;
-      prefetch(region.lengths.data() + soon * energy_thresholds(), sizeof(std::int64_t));
-      if (hazard_) prefetch(region.hazards[soon].lengths().data(), 192);
-      if (keep_total_) prefetch(region.totals[soon].histogram.counts(), 128);
+      for (const LogHistogram& h : region.records[soon].histogram) prefetch(h.counts(), h.bytes());
+      prefetch(region.exceedances.data() + soon * threshold_count_, sizeof(std::uint32_t) * threshold_count_);
+      prefetch(region.lengths.data() + soon * energy_thresholds(), sizeof(std::int64_t) * energy_thresholds());
+      if (hazard_) prefetch(region.hazards[soon].lengths().data(), region.hazards[soon].lengths().size_bytes());
+      if (keep_total_) prefetch(region.totals[soon].histogram.counts(), region.totals[soon].histogram.bytes());
     }
     CellRecord& record = region.records[groups[i].record];
     gather(groups[i].visits, batch, values, record, reach);
@@ -194,9 +216,12 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
     }
     const PerQuantity<float> largest = record.add(values);
     count_exceedances(region.exceedances.data() + groups[i].record * threshold_count_, values, largest);
-    if (hazard_)
-      region.hazards[groups[i].record].add(hazard_->rules, values.of(Quantity::Energy), values.annual_shares);
     add_lengths(groups[i], visits.lengths, batch, region);
+    if (hazard_) {
+      HazardCell& hazard = region.hazards[groups[i].record];
+      hazard.add(hazard_->rules, values.of(Quantity::Energy), values.annual_shares);
+      add_weighted_lengths(groups[i], visits.lengths, batch, hazard);
+    }
     scored += values.count;
   }
   return scored;
@@ -208,8 +233,7 @@ void Tally::add_lengths(const Group& group, std::span<const float> mixed, const 
                         Region& region) const {
   CellRecord& record = region.records[group.record];
   std::int64_t* const above = region.lengths.data() + group.record * energy_thresholds();
-  HazardCell* const hazard = hazard_ ? &region.hazards[group.record] : nullptr;
-  std::array<float, 64> buffer;
+  LengthsByLevel whole(batch.levels());
   std::uint16_t previous = group.visits.front().trajectory;
   double of_block = 0.0;
   std::int64_t length = 0, squares = 0;
@@ -219,16 +243,29 @@ void Tally::add_lengths(const Group& group, std::span<const float> mixed, const 
       of_block = 0.0;
     }
     previous = visit.trajectory;
-    const std::span<const float> lengths = lengths_of(visit, mixed, batch.levels(), buffer);
+    if (!visit.mixed) {
+      of_block += visit.length;
+      whole.add(visit.above, fixed_length(visit.length));
+      continue;
+    }
+    const float* const lengths = mixed.data() + std::bit_cast<std::uint32_t>(visit.length);
     of_block += lengths[0];
     length += fixed_length(lengths[0]);
-    for (std::size_t i = 0; i + 1 < lengths.size(); ++i) above[i] += fixed_length(lengths[1 + i]);
-    if (hazard == nullptr) continue;
-    const VisitBatch::Trajectory& of = batch.trajectories()[visit.trajectory];
-    hazard->add_lengths(hazard_->rules, lengths, of.annual_share, of.size.diameter);
+    for (std::size_t i = 0; i + 1 < batch.levels(); ++i) above[i] += fixed_length(lengths[1 + i]);
   }
-  add_checked(record.length, length);
+  add_checked(record.length, length + whole.add_to(above));
   add_checked(record.length_squares, squares + fixed_length(of_block * of_block));
+}
+
+/// Adds the weighted lengths of all visits to the hazard of the cell.
+void Tally::add_weighted_lengths(const Group& group, std::span<const float> mixed, const VisitBatch& batch,
+                                 HazardCell& hazard) const {
+  std::array<float, 64> buffer;
+  for (const Visit& visit : group.visits) {
+    const VisitBatch::Trajectory& of = batch.trajectories()[visit.trajectory];
+    hazard.add_lengths(hazard_->rules, lengths_of(visit, mixed, batch.levels(), buffer), of.annual_share,
+                       of.size.diameter);
+  }
 }
 
 void Tally::count_exceedances(std::uint32_t* over, const CellValues& values, const PerQuantity<float>& largest) const {
@@ -252,7 +289,7 @@ const CellRecord* Tally::find(int column, int row) const {
 }
 
 void Tally::prefetch_record(int column, int row) const {
-  prefetch(find(column, row), sizeof(CellRecord));
+  if (const CellRecord* const record = find(column, row)) prefetch(record, sizeof(CellRecord));
 }
 
 const HazardCell* Tally::hazard(int column, int row) const {

@@ -21,14 +21,11 @@ LengthRules length_rules(const OutputSettings& output) {
   return rules;
 }
 
-Visit& VisitList::append(const Visit& visit, std::vector<Piece>& spare) {
-  if (empty() || used_ == kPiece) {
-    if (spare.empty()) spare.push_back(std::make_unique_for_overwrite<Visit[]>(kPiece));
-    pieces_.push_back(std::move(spare.back()));
-    spare.pop_back();
-    used_ = 0;
-  }
-  return pieces_.back()[used_++] = visit;
+void VisitList::append_piece(std::vector<Piece>& spare) {
+  if (spare.empty()) spare.push_back(std::make_unique_for_overwrite<Visit[]>(kPiece));
+  pieces_.push_back(std::move(spare.back()));
+  spare.pop_back();
+  used_ = 0;
 }
 
 void VisitList::clear(std::vector<Piece>& spare) {
@@ -218,8 +215,8 @@ void VisitBatch::close_visit() {
   while (top > 0 && here_[top] == 0.0F) --top;
   bool mixed = false;
   for (std::size_t level = 0; level < top; ++level) mixed = mixed || here_[level] > 0.0F;
+  visit.above = top & 0x3FU;  // before `mixed`, one byte of it: in the other order this would wait for that byte
   visit.mixed = mixed;
-  visit.above = top & 0x3FU;
   visit.length = mixed ? std::bit_cast<float>(static_cast<std::uint32_t>(region_->lengths.size())) : here_[top];
   if (mixed) {
     for (std::size_t level = top; level-- > 0;) here_[level] += here_[level + 1];  // that level and all above it
@@ -255,10 +252,7 @@ Visit& VisitBatch::new_visit(int column, int row) {
   if (keep_total_) region_->totals.push_back(0.0F);
   const auto trajectory = static_cast<std::uint16_t>(trajectories_.size() - 1);
   size_ -= region_->visits.room();
-  Visit here{};
-  here.cell = cell;
-  here.trajectory = trajectory;
-  visit_ = &region_->visits.append(here, spare_);
+  visit_ = &region_->visits.append(cell, trajectory, spare_);
   size_ += region_->visits.room();
   return *visit_;
 }

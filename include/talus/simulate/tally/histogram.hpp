@@ -1,5 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -31,6 +33,18 @@ class LogHistogram {
   ~LogHistogram();
 
   void add(std::span<const float> values);
+  /// The first part of `add`: makes room for the values, from `least` to `largest`, both kFloor or more; or, if they
+  /// are few, adds them. Returns those that are left to be counted: all or none.
+  std::span<const float> make_room(std::span<const float> values, float least, float largest);
+  /// The second part of `add`: counts values for which there is room.
+  void count_all(std::span<const float> values);
+  /// Local copies for a loop that counts: the compiler must assume that a byte written may change any member.
+  struct Narrow {
+    unsigned char* counts;  ///< null if they are wider than 8 bits
+    int first;
+    unsigned char& of(float value) const { return counts[std::max(0, key_of(value) - first)]; }
+  };
+  Narrow narrow() const { return {width_ == 1 ? counts_ : nullptr, first_}; }
   void merge(const LogHistogram& other);
 
   void save(ByteWriter& out) const;
@@ -38,7 +52,8 @@ class LogHistogram {
   static LogHistogram restored(ByteReader& in);
 
   std::uint64_t count() const;
-  const void* counts() const { return counts_; }  ///< their address, for the tally to prefetch
+  const void* counts() const { return counts_; }                     ///< their address, for the tally to prefetch
+  std::size_t bytes() const { return std::size_t{size_} * width_; }  ///< of the counts
 
   /// The values below which these shares of the counted values lie, interpolated within their bins.
   ///
@@ -58,6 +73,13 @@ class LogHistogram {
 
  private:
   static constexpr int kFew = 5;
+  static constexpr int kShift = 19;  // a float keeps 23 bits after the leading one: 4 of them number a doubling's bins
+  static constexpr int kKeys = 1 << (31 - kShift);  // keys of positive floats are below this
+
+  static int key_of(float value) {
+    return static_cast<int>(std::bit_cast<std::uint32_t>(value > kFloor ? value : kFloor) >> kShift);
+  }
+  static double edge_of(int key) { return std::bit_cast<float>(static_cast<std::uint32_t>(key) << kShift); }
 
   void swap(LogHistogram& other) noexcept {
     std::swap(memory_, other.memory_);
@@ -72,7 +94,6 @@ class LogHistogram {
   void put(int bin, std::uint32_t count);
   void add_count(int bin, std::uint32_t more);
   void add_key(int key);
-  void count_all(std::span<const float> values);
   void cover(int low_key, int high_key);
   void spill(int low_key, int high_key);
   void widen(std::uint8_t width);

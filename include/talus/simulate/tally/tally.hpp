@@ -99,6 +99,8 @@ class Tally {
   Place place_of(int column, int row) const;
   std::uint64_t score(std::size_t index, const RegionVisits& visits, const VisitBatch& batch, Work& work);
   void add_lengths(const Group& group, std::span<const float> mixed, const VisitBatch& batch, Region& region) const;
+  void add_weighted_lengths(const Group& group, std::span<const float> mixed, const VisitBatch& batch,
+                            HazardCell& hazard) const;
   std::size_t energy_thresholds() const { return thresholds_[Quantity::Energy].size(); }
   void count_exceedances(std::uint32_t* over, const CellValues& values, const PerQuantity<float>& largest) const;
 

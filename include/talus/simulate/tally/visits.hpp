@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <new>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -16,15 +17,15 @@ namespace talus {
 /// One way of a trajectory through a cell, with the largest values on it. A trajectory that comes back has several
 /// visits to the cell; scoring joins them.
 struct Visit : Maxima {
-  std::uint16_t cell;        ///< within its region: row * kRegionSide + column
-  std::uint16_t trajectory;  ///< within its batch
-  std::uint32_t impacts : 22;
-  std::uint32_t above : 6;  ///< number of energy thresholds that its whole length is above; the others nothing of it
-  std::uint32_t mixed : 1;  ///< some threshold has a part of the length: see RegionVisits
-  std::uint32_t deposited : 1;  ///< the path ends here: the block stays
-  std::uint32_t trapped : 1;    ///< it stays because it is trapped
-  std::uint32_t left : 1;       ///< the path leaves the terrain from here
-  float length;                 ///< counted, in plan [m]; if mixed, the bits are its index in RegionVisits::lengths
+  std::uint16_t cell = 0;        ///< within its region: row * kRegionSide + column
+  std::uint16_t trajectory = 0;  ///< within its batch
+  std::uint32_t impacts : 22 = 0;
+  std::uint32_t above : 6 = 0;      ///< energy thresholds that its whole length is above; the others nothing of it
+  std::uint32_t mixed : 1 = 0;      ///< some threshold has a part of the length: see RegionVisits
+  std::uint32_t deposited : 1 = 0;  ///< the path ends here: the block stays
+  std::uint32_t trapped : 1 = 0;    ///< it stays because it is trapped
+  std::uint32_t left : 1 = 0;       ///< the path leaves the terrain from here
+  float length = 0.0F;              ///< counted, in plan [m]; if mixed, the bits are its index in RegionVisits::lengths
 };
 
 inline constexpr double kAnyHeight = std::numeric_limits<double>::infinity();
@@ -48,21 +49,32 @@ class VisitList {
   using Piece = std::unique_ptr<Visit[]>;
   static constexpr std::size_t kPiece = 64;  // visits
 
+  /// Makes the visit in its place: a copy would wait until what it reads is written.
   /// @param spare  pieces that no list uses; if there is none, one is made
-  Visit& append(const Visit& visit, std::vector<Piece>& spare);
+  Visit& append(std::uint16_t cell, std::uint16_t trajectory, std::vector<Piece>& spare) {
+    if (empty() || used_ == kPiece) append_piece(spare);
+    return *::new (&pieces_.back()[used_++]) Visit{{}, cell, trajectory};
+  }
   /// Gives all pieces back.
   void clear(std::vector<Piece>& spare);
 
   std::size_t size() const { return empty() ? 0 : (pieces_.size() - 1) * kPiece + used_; }
   bool empty() const { return pieces_.empty(); }
   std::size_t room() const { return pieces_.size() * kPiece; }  ///< visits that its memory holds
+  /// Calls action(visit) for all visits. Prefetches the piece after the current one: they are scattered.
   template <class Action>
   void for_each(const Action& action) const {
-    for (const Piece& piece : pieces_)
-      for (const Visit& visit : std::span(piece.get(), &piece == &pieces_.back() ? used_ : kPiece)) action(visit);
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      const bool last = i + 1 == pieces_.size();
+      for (std::size_t at = 0; !last && at < kPiece * sizeof(Visit); at += 64)
+        __builtin_prefetch(reinterpret_cast<const char*>(pieces_[i + 1].get()) + at);
+      for (const Visit& visit : std::span(pieces_[i].get(), last ? used_ : kPiece)) action(visit);
+    }
   }
 
  private:
+  void append_piece(std::vector<Piece>& spare);
+
   std::vector<Piece> pieces_;
   std::size_t used_ = 0;  // of the last piece, if there is one
 };

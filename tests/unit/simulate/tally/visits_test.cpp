@@ -276,11 +276,7 @@ TEST(VisitList, KeepsTheOrderAndUsesPiecesAgain) {
   std::vector<VisitList::Piece> spare;
   VisitList list, other;
   const auto append_to = [&](VisitList& to, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) {
-      Visit visit{};
-      visit.height = static_cast<float>(i);
-      to.append(visit, spare);
-    }
+    for (std::size_t i = 0; i < count; ++i) to.append(0, 0, spare).height = static_cast<float>(i);
   };
   for (const std::size_t count :
        {std::size_t{0}, std::size_t{1}, VisitList::kPiece, VisitList::kPiece + 1, 3 * VisitList::kPiece}) {
