@@ -57,7 +57,7 @@ std::array<std::uint32_t, kRegionCells + 1> starts_of_cells(const VisitList& vis
 
 /// Prefetches memory that is needed soon: records are scattered, and waiting for them would take most of the time.
 void prefetch(const void* memory, std::size_t bytes) {
-  if (bytes == 0) return;  // a histogram that has no counts yet
+  if (memory == nullptr || bytes == 0) return;  // a histogram that has no counts yet
   const char* const begin = static_cast<const char*>(memory);
   for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(begin + i, 1);
   __builtin_prefetch(begin + bytes - 1, 1);  // the end may lie in one line more
