@@ -76,7 +76,7 @@ class Design(Case):
         width = report["containment"]
         self.assertAlmostEqual(width["shortest"]["width_m"], 19.8, 6)
         self.assertEqual((width["by_impact_probability"]["from_m"], width["by_impact_probability"]["to_m"]), (10, 30))
-        self.assertEqual([r["quantity"] for r in report["reliability"]], ["jump height", "centre", "speed", "energy"])
+        self.assertEqual([r["quantity"] for r in report["reliability"]], ["jump height", "centre height", "speed", "energy"])
         self.assertIn("h_i", text)
         rows = {row["name"]: row for row in self.read_table("out/barrier_road.csv")}
         self.assertAlmostEqual(float(rows["h_i"]["value"]), values["h_i"], 4)
@@ -91,7 +91,7 @@ class Design(Case):
         self.rows = [*self.rows[:99], (0, 99, "road", 10.0, 1.1, 3000.0, 20.0), (0, 100, "road", 10.0, 1.3, 5000.0, 20.0), *self.rows[101:]]
         self.save()
         values, report, _ = self.design()
-        jump, centre = ({r["quantity"]: r["exceeded"][0] for r in report["reliability"]}[name] for name in ("jump height", "centre"))
+        jump, centre = ({r["quantity"]: r["exceeded"][0] for r in report["reliability"]}[name] for name in ("jump height", "centre height"))
         radius = [0.5 * (6.0 / math.pi * mass / 2500.0)**(1.0 / 3.0) for mass in (3000.0, 5000.0)]
         self.assertTrue(1.1 + radius[0] < values["h_i"] < 1.3 + radius[1] and 1.3 < values["h_i"], values)
         self.assertEqual((centre["name"], centre["value"], jump["share"]), ("h_i", values["h_i"], 0.0))
@@ -175,7 +175,7 @@ class Design(Case):
         self.rows = [(0, i, "road", 20.0, 1.0, 3000.0, 10.0) for i in range(100)] + [(0, 100, "road", 1.0, 1.0, 30000.0, 10.0)]
         self.save()
         (note,) = notes()
-        self.assertIn("has 6000 kJ, more than any crossing of the run (600 kJ)", note)
+        self.assertIn("has more energy than any crossing (on the line 6000 kJ, the crossings at most 600 kJ", note)
         self.assertEqual(notes("--volume", "2"), [])
 
     def test_crossings_up_to_an_end_of_the_line_are_said(self):
@@ -255,22 +255,25 @@ class Design(Case):
 
     def test_a_design_beyond_any_net_is_said(self):
         """Above 15 000 kJ or 12 m, docs/barrier.md: at 17.545 m/s, 1.3 times the energy of 2 m3 of 2500 kg/m3 is 1.1 MJ."""
-        said = "more than any net has (15000 kJ, 12 m): place the line elsewhere"
+        said = ", on the line or one of its stretches: place the line elsewhere, or take a dam or a gallery"
         self.assertNotIn(said, " ".join(self.design()[1]["notes"]))
-        self.assertIn(said, " ".join(self.design("--volume", "40")[1]["notes"]))
+        (note,) = [note for note in self.design("--volume", "40")[1]["notes"] if said in note]
+        self.assertRegex(note, r"^MEL of up to \d+ kJ is more than any net holds \(15000 kJ\), on the line")
+        # from 25 m on: (10 m + 0.76 m + 0.95 * 0.25 m) * 1.21 + 0.78 m
         self.rows = [(source, block, screen, speed, 10.0 + jump, mass, place) for source, block, screen, speed, jump, mass, place in self.rows]
         self.save()
-        self.assertIn(said, " ".join(self.design()[1]["notes"]))
+        (note,) = [note for note in self.design()[1]["notes"] if said in note]
+        self.assertRegex(note, r"^h_i of up to 14\.1 m is higher than any net \(12 m\), on the line")
 
     def test_a_mass_and_a_speed_of_different_blocks_are_said_by_stretch(self):
         """On the first stretch the heavy blocks are slow: at v95 the largest one would have more energy than any crossing."""
-        said = "stretches with a design, their largest block at the speed of the percentile has more energy"
+        said = "stretches with a design, up to "
         self.assertNotIn(said, " ".join(self.design("--stretch", "30")[1]["notes"]))
         self.rows = [(0, i, "road", 20.0 if i < 50 else 5.0, 1.0, 300.0 if i < 50 else 5000.0, 10.0) for i in range(100)]
         self.rows += [(0, 100 + i, "road", 5.0, 1.0, 5000.0, 60.0) for i in range(30)]
         self.save()
         # 1/2 5000 kg (20 m/s)^2 is 1000 kJ; the crossings have 60 and 62.5 kJ
-        self.assertIn("on 1 of 2 " + said + " than any crossing there (up to 16 times)", " ".join(self.design("--stretch", "30")[1]["notes"]))
+        self.assertIn("on 1 of 2 " + said + "16 times as much", " ".join(self.design("--stretch", "30")[1]["notes"]))
         self.assertNotIn(said, " ".join(self.design("--stretch", "30", "--volume", "2")[1]["notes"]))
 
     def test_a_volume_far_above_those_of_the_run_is_said(self):
@@ -499,7 +502,7 @@ class Weights(Case):
         self.assertEqual(self.report("--unweighted")["once_in"], [])
         for given, said in (("0", "--return-periods = 0: must be above 0"), ("2e6", "--return-periods = 2000000: must be")):
             self.fails(2, said, arguments=["barrier", self.path("out"), "--return-periods", given])
-        self.fails(2, "--return-periods: every block counts alike, as --unweighted asks, must have annual frequencies",
+        self.fails(2, "--return-periods: every block counts alike, as --unweighted asks: give the sources a field frequency",
                    arguments=["barrier", self.path("out"), "--unweighted", "--return-periods", "30"])
 
     def without_a_fit(self, table, weighted):
@@ -508,9 +511,10 @@ class Weights(Case):
         self.assertEqual(few["reliability"], [])
         notes = [note for note in few["notes"] if "; by frequency, " in note]
         self.assertEqual([name for note in notes for name in ("h_i", "v_d", "SEL", "MEL") if f"by frequency, {name} is exceeded by" in note],
-                         ["h_i", "v_d", "SEL", "MEL"])
+                         ["h_i", "h_i", "v_d", "SEL", "MEL"])  # of the jump and of the centre
+        self.assertIn("few.csv have no values of the centre height; by frequency, h_i is exceeded by", notes[1])
         self.assertIn("few.csv hold 9 values of the jump height above 0: too few for a Weibull fit", notes[0])
-        for note, quantity in zip(notes, [r for r in weighted["reliability"] if r["quantity"] != "centre"]):
+        for note, quantity in zip(notes, weighted["reliability"]):
             for limit in quantity["exceeded"]:
                 years = 1.0 / (limit["per_year"]["value"] or limit["per_year"]["high"])
                 found = re.search(limit["name"] + " is exceeded by .*? of the simulated crossings, (?:rarer than )?once in ([0-9. ]+?) years", note)

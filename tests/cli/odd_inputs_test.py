@@ -187,6 +187,23 @@ class Elevations(OneThread, Case):
         subprocess.run(said.split("declare it with ")[1].split(" (the file")[0], shell=True, cwd=self.folder, capture_output=True, check=True)
         self.assertIn("30 of them without a height", self.run_well("check", "--dem", self.path("mended.tif"), *check).stdout)
 
+    def test_a_second_nodata_value_beside_a_mask_or_a_scale(self):
+        """No command is given that would lose them: it brought the masked cells back as heights."""
+        z = heights()
+        z[:5, :5], z[50, 50:55] = -9999.0, -32768.0
+        for name in ("masked", "scaled"):
+            write_dem(self.path(name + ".tif"), z, nodata=-9999.0)
+            dem = gdal.Open(self.path(name + ".tif"), gdal.GA_Update)
+            if name == "masked":
+                dem.CreateMaskBand(gdal.GMF_PER_DATASET)
+                dem.GetRasterBand(1).GetMaskBand().WriteArray(np.full(z.shape, 255, np.uint8))
+            else:
+                dem.GetRasterBand(1).SetScale(0.5)
+            dem = None
+            said = self.fails(2, "declare it with a copy in which -9999, the nodata value that the file has already, stands in its place",
+                              arguments=["check", "--dem", self.path(name + ".tif"), "--sources", self.path("sources.gpkg"), "--diameter", "0.8"]).stderr
+            self.assertNotIn("gdal_calc.py", said)
+
     def test_heights_in_other_units(self):
         for unit, word, factor in (("cm", "centimetres", "A*0.01'"), ("km", "kilometres", "A*1000'"),
                                    ("Millimeter", "millimetres", "A*0.001'"), ("ft", "feet", "A*0.3048'"),

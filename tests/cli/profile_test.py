@@ -172,7 +172,7 @@ class Files(OnASlope):
                                            "screens.csv", "stops.csv"])
         layers = {layer.GetName(): layer.GetFeatureCount() for layer in ogr.Open(self.path("out/profile.gpkg"))}
         self.assertEqual(layers, {"profile": 1, "stops": 500, "crossings": len(self.rows("screens.csv")),
-                                  "trajectories": 20, "bins": 80})
+                                  "trajectories": 20, "bins": 80, "layer_styles": 4})
         fields, point = rows_of(self.path("out/profile.gpkg"), "stops")[7]
         self.assertEqual(fields["x"], stops[7]["x"])
         self.assertAlmostEqual(point.GetX(), stops[7]["x"], 3)
@@ -628,11 +628,13 @@ class Faults(OnASlope):
                                ([(150, 280), (150, 100), (151, 200), (152, 20)], 3),  # beside itself: drawn there and back
                                ([(150, 280), (150, 150), (200, 150), (200, 200), (100, 200), (100, 20)], 5),
                                ([(150, 280), (160, 280), (160, 200), (150, 200), (150, 280)], 5),
-                               ([(150, 280), (150, 200), (150, 200), (160, 150), (150, 20)], None)):
+                               ([(150, 280), (150, 200), (150, 200), (160, 150), (150, 20)], None),
+                               ([(150, 280), (150, 100), (150, 100.8), (150, 20), (150, 20.5)], None),  # slips, at the end, too
+                               ([(150 + 0.5 * (-1)**(i // 2), 280 - i + 1.5 * (i % 3)) for i in range(200)], None)):  # of a GPS
             text = ", ".join(f"{WEST + x} {NORTH - 300 + y}" for x, y in places)
             write_features(self.path("line.gpkg"), "line", [(f"LINESTRING ({text})", [])])
             if vertex is None:
-                self.profile("--trajectories", "2")
+                self.profile("--trajectories", "2", "--overwrite")
                 continue
             x, y = places[vertex - 1]
             self.fails(2, "line.gpkg: the line runs back over itself or crosses itself before its vertex "

@@ -2,6 +2,7 @@
 import hashlib
 import math
 import os
+import sqlite3
 import unittest
 
 import numpy as np
@@ -137,6 +138,16 @@ class Sources(Case):
         with open(self.path("json.gpkg"), "w", encoding="utf-8") as file:  # GDAL opens it whatever its name is
             file.write('{"type": "FeatureCollection", "name": "pits", "features": []}')
         self.fails(2, "is no GeoPackage", arguments=[*pits, self.path("json.gpkg")])
+
+    def test_a_style_of_the_user_is_not_lost(self):  # that QGIS has saved in the file
+        self.find("--slope", "30")
+        self.find("--slope", "31", "--overwrite")
+        with sqlite3.connect(self.path("cells.gpkg")) as file:
+            file.execute("insert into layer_styles (f_table_name, styleName, styleQML, update_time) "
+                         "values ('source_points', 'mine', '<qgis/>', '2026-11-30T12:00:00Z')")
+        file.close()
+        self.fails(2, "was edited after talus had written it (layer_styles)",
+                   arguments=["sources", "--dem", self.path("dem.tif"), "--slope", "30", "-o", self.path("cells.gpkg"), "--overwrite"])
 
     def test_a_link_stays_and_leads_to_the_new_file(self):  # it was replaced by a file, the file it led to stayed
         os.mkdir(self.path("far"))

@@ -258,10 +258,10 @@ TEST(ObjectsTable, SaysWhatIsNotAssessed) {
     return objects_html(part, false, {"none", "low", "high"}).text();
   };
   EXPECT_THAT(text(), HasSubstr("<tr><td>km 1.6 (67 % of it not assessed: the DEM has no height there)</td>"
-                                "<td class='n'>at least 0 [0, ?]</td><td class='n'>not known</td>"));
+                                "<td class='n'>0 [0 or more]</td><td class='n'>not known</td>"));
   EXPECT_THAT(text(), HasSubstr("<td>none or higher</td>"));
   object.frequency = 0.1, object.low = 0.05;
-  EXPECT_THAT(text(), HasSubstr("at least 0.1 [0.05, ?]</td><td class='n'>at most 10</td>"));
+  EXPECT_THAT(text(), HasSubstr("0.1 [0.05 or more]</td><td class='n'>10 [20 or less]</td>"));
   object.high = 0.2, object.highest_class = 1;
   EXPECT_THAT(text(),
               HasSubstr("<tr><td>km 1.6</td><td class='n'>0.1 [0.05, 0.2]</td><td class='n'>10 [5 to 20]</td>"));

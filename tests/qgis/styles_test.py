@@ -194,6 +194,27 @@ class Project(unittest.TestCase):
             if name.startswith("Stops"):
                 self.assertGreater(len(used), 2)  # the classes tell blocks apart
 
+    def test_objects_that_are_not_wholly_assessed_are_in_no_class_of_safe_ones(self):
+        """No block comes to a field in the west of the cliffs, nor to one that lies mostly off the DEM there."""
+        fields, out = os.path.join(self.moved, "fields.csv"), os.path.join(self.moved, "fields")
+        with open(fields, "w", encoding="utf-8") as file:
+            for row in ("name,wkt", *(f'{name},"POLYGON (({w} 1170500,{e} 1170500,{e} 1170520,{w} 1170520,{w} 1170500))"'
+                                      for name, w, e in (("inside", 2650020, 2650030), ("partly", 2649980, 2650030)))):
+                file.write(row + "\n")
+        for arguments in (["run", os.path.join(self.moved, "valley/scenario.toml"), "--trajectories", "2", "-o", out],
+                          ["hazard", out, "--objects", fields]):
+            subprocess.run([TALUS, *arguments, "-q"], check=True)
+        layer = QgsVectorLayer(os.path.join(out, "objects.gpkg"), "objects", "ogr")
+        expression, context = QgsExpression(layer.renderer().classAttribute()), QgsExpressionContext()
+        values = {}
+        for feature in layer.getFeatures():
+            context.setFeature(feature)
+            context.setFields(layer.fields())
+            self.assertEqual(feature["trajectories"], 0)
+            values[feature["name"]] = expression.evaluate(context)
+        self.assertEqual(values["inside"], 1e99)
+        self.assertFalse(values["partly"])  # NULL
+
     def test_drawn_colours_are_those_of_the_classes(self):
         layer = self.layers["Hazard class"]
         band = gdal.Open(os.path.join(self.out, "hazard_class.tif"))

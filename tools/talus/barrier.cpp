@@ -84,8 +84,7 @@ void check_numbers(const BarrierOptions& o) {
 void refuse_return_periods(const BarrierOptions& o, const Weighting& weighting) {
   if (!o.years.empty() && !weighting.scale)
     throw talus::InputError("--return-periods: every block counts " + weighting.text +
-                            ", must have annual frequencies: give the sources a field frequency, or run with "
-                            "--frequency; else leave it out");
+                            ": give the sources a field frequency, or run with --frequency; else leave it out");
 }
 
 /// Throws InputError if what only a line on a map has was asked for.
@@ -243,10 +242,16 @@ std::optional<std::string> unlikely_note(const BarrierReport& report) {
   for (const talus::io::StretchRow& row : report.stretches)
     if (const auto& design = row.values.design)
       mel = std::max(mel, design->mel), height = std::max(height, design->height);
-  if (!(mel > talus::kLargestNetCapacity || height > talus::kHighestNet)) return std::nullopt;
-  return "up to " + talus::with_digits(1e-3 * mel, 4) + " kJ (MEL) and " + talus::with_digits(height, 3) +
-         " m (h_i) are needed, more than any net has (" + talus::text_of(1e-3 * talus::kLargestNetCapacity) + " kJ, " +
-         talus::text_of(talus::kHighestNet) + " m): place the line elsewhere, or take a dam, a gallery or several nets";
+  std::vector<std::string> texts;
+  if (mel > talus::kLargestNetCapacity)
+    texts.push_back("MEL of up to " + talus::with_digits(1e-3 * mel, 4) + " kJ is more than any net holds (" +
+                    talus::text_of(1e-3 * talus::kLargestNetCapacity) + " kJ)");
+  if (height > talus::kHighestNet)
+    texts.push_back("h_i of up to " + talus::with_digits(height, 3) + " m is higher than any net (" +
+                    talus::text_of(talus::kHighestNet) + " m)");
+  if (texts.empty()) return std::nullopt;
+  return talus::joined(texts) +
+         ", on the line or one of its stretches: place the line elsewhere, or take a dam or a gallery";
 }
 
 /// @param all  crossings, also later ones of a block
@@ -273,47 +278,52 @@ std::optional<std::string> volume_note(double volume, double largest) {
          " m3: is it in m3? The speeds and heights are those of the blocks of the run";
 }
 
-/// A line where the design block with the percentile of the speed, before all factors, has more energy than any block
-/// that crosses: where sizes differ much, the many give the speed and the largest one the mass.
-std::optional<std::string> energy_note(const BarrierReport& report, std::span<const talus::LineCrossing> crossings) {
-  const double speed = report.design.speed_percentile;
-  const double energy = 0.5 * report.block.volume * report.block.density * speed * speed;
-  double largest = 0.0;
-  for (const talus::LineCrossing& c : crossings) largest = std::max(largest, c.energy());
-  if (!(energy > largest)) return std::nullopt;
-  return "the largest block at the speed of the percentile has " + talus::with_digits(1e-3 * energy, 4) +
-         " kJ, more than any crossing of the run (" + talus::with_digits(1e-3 * largest, 4) +
-         " kJ): this mass and this speed come in no one fall. Where the block of the design is known, give it by "
-         "--volume";
+/// Energy of a block at a speed, without factors [J].
+double energy_of(const talus::DesignBlock& block, double speed) {
+  return 0.5 * block.volume * block.density * speed * speed;
 }
 
-/// A line where that is so on stretches: their largest block at the speed of the percentile there.
-std::optional<std::string> stretch_energy_note(const BarrierReport& report) {
+/// "on 13 of 15 stretches with a design, up to 6 times as much": where the block of a stretch, at the speed of its
+/// percentile, has more energy than any crossing of it.
+std::optional<std::string> stretches_beyond_crossings(const BarrierReport& report) {
   std::size_t designed = 0, above = 0;
   double most = 1.0;
   for (const talus::io::StretchRow& row : report.stretches) {
     const talus::StretchDesign& s = row.values;
     if (!s.design) continue;
     ++designed;
-    const double speed = s.design->speed_percentile, energy = 0.5 * s.block.volume * s.block.density * speed * speed;
+    const double energy = energy_of(s.block, s.design->speed_percentile);
     if (!(energy > s.largest_energy)) continue;
     ++above;
     most = std::max(most, energy / s.largest_energy);
   }
   if (above == 0) return std::nullopt;
-  return "on " + std::to_string(above) + " of " + std::to_string(designed) +
-         " stretches with a design, their largest block at the speed of the percentile has more energy than any "
-         "crossing there (up to " +
-         talus::with_digits(most, 2) +
-         " times): this mass and this speed come in no one fall. Where the block of the design is known, give it by "
-         "--volume";
+  return "on " + std::to_string(above) + " of " + std::to_string(designed) + " stretches with a design, up to " +
+         talus::with_digits(most, 2) + " times as much";
 }
 
+/// A line where the design block with the percentile of the speed has more energy than any block that crosses: where
+/// sizes differ much, the many give the speed and the largest one the mass.
+///
 /// @param all  crossings, also later ones of a block
-/// @return     the block of the design
+std::optional<std::string> energy_note(const BarrierReport& report, std::span<const talus::LineCrossing> all) {
+  const double energy = energy_of(report.block, report.design.speed_percentile);
+  double largest = 0.0;
+  for (const talus::LineCrossing& c : all) largest = std::max(largest, c.energy());
+  std::vector<std::string> where;
+  if (energy > largest)
+    where.push_back("on the line " + talus::with_digits(1e-3 * energy, 4) + " kJ, the crossings at most " +
+                    talus::with_digits(1e-3 * largest, 4) + " kJ");
+  if (const auto stretches = stretches_beyond_crossings(report)) where.push_back(*stretches);
+  if (where.empty()) return std::nullopt;
+  return "the largest block at the speed of the percentile has more energy than any crossing (" + where.front() +
+         (where.size() > 1 ? "; " + where.back() : "") +
+         "): this mass and this speed come in no one fall. Where the block of the design is known, give it by --volume";
+}
+
+/// @return  the block of the design
 talus::DesignBlockRule add_design(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
-                                  std::span<const talus::LineCrossing> all, const RunSummary& run,
-                                  const BarrierOptions& o) {
+                                  const RunSummary& run, const BarrierOptions& o) {
   report.factors = o.factors;
   report.factors.percentile = 0.01 * o.percentile;
   const talus::DesignBlockRule rule{o.volume, o.density.value_or(run.density), run.density};
@@ -324,8 +334,6 @@ talus::DesignBlockRule add_design(BarrierReport& report, std::span<const talus::
             volume_note(*o.volume, talus::DesignBlockRule{{}, rule.density, rule.rock_density}.of(crossings).volume))
       report.notes.push_back(*note);
   report.design = talus::design_barrier(crossings, report.block, report.factors);
-  if (!o.volume)
-    if (const auto note = energy_note(report, all)) report.notes.push_back(*note);
   report.longest = o.stretch.value_or(kLongestStretch);
   return rule;
 }
@@ -349,6 +357,8 @@ void add_return_periods(BarrierReport& report, std::span<const talus::LineCrossi
   if (!weighting.scale) return;
   if (years.empty()) years = talus::HazardMatrix{}.years;
   std::ranges::sort(years);
+  const auto [again, end] = std::ranges::unique(years);
+  years.erase(again, end);
   const auto once_in = [&](const auto& value_of) {
     return talus::values_once_in(years, crossings, value_of,
                                  [&](const talus::CrossingSums& counted) { return *weighting.per_year(counted); });
@@ -390,9 +400,8 @@ void add_reliability(Exceedances exceedances, const CrossingTable& values, const
   if (values.mass.size() == values.count && values.height.size() == values.count)
     for (std::size_t i = 0; i < values.mass.size(); ++i) centres.push_back(values.height[i] + radius(values.mass[i]));
   exceedances.add({"jump height", "m", &Crossing::height}, values.height, {{"h_i", design.height}});
-  if (!centres.empty())
-    exceedances.add({talus::io::kCentre, "m", [&](const Crossing& c) { return c.height + radius(c.mass); }}, centres,
-                    {{"h_i", design.height}});
+  exceedances.add({talus::io::kCentre, "m", [&](const Crossing& c) { return c.height + radius(c.mass); }}, centres,
+                  {{"h_i", design.height}});
   exceedances.add({"speed", "m/s", &Crossing::speed}, values.speed, {{"v_d", design.speed}});
   exceedances.add({"energy", "kJ", [](const Crossing& c) { return 1e-3 * c.energy(); }}, kilojoules,
                   {{"SEL", design.sel * 1e-3}, {"MEL", design.mel * 1e-3}});
@@ -416,10 +425,10 @@ BarrierReport report_of(const CrossingTable& crossings, const RunSummary& run, c
   keep_falling(blocks, o, report, weighting);
   if (report.width) report.width->shortest = talus::shortest_stretch(blocks, report.containment);
   report.values = o.observed.empty() ? "the simulated crossings" : "the observed crossings of " + o.observed;
-  const talus::DesignBlockRule rule = add_design(report, blocks, all, run, o);
+  const talus::DesignBlockRule rule = add_design(report, blocks, run, o);
   if (!run.of_profile) add_stretches(report, all, blocks.size(), rule, screen);
   if (!o.volume)
-    if (const auto note = stretch_energy_note(report)) report.notes.push_back(*note);
+    if (const auto note = energy_note(report, all)) report.notes.push_back(*note);
   if (const auto note = unlikely_note(report)) report.notes.push_back(*note);
   add_crossings_per_year(report, weighting);
   add_reliability({report, blocks, weighting, o.seed}, values, report.design, run.density);

@@ -77,6 +77,8 @@ class CrossingSummer {
   std::unordered_map<std::size_t, double> blocks_;  // the weights of their crossings
   std::unordered_map<std::uint64_t, Stratum> strata_;
 };
+
+/// Sums the weights of all crossings.
 CrossingSums sums_of(std::span<const LineCrossing> crossings);
 
 /// How often blocks and pieces cross a line, or a part of it, with 95 % bounds [1/year].

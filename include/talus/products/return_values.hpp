@@ -10,8 +10,9 @@ namespace talus {
 /// How often some of the crossings of a line come [1/year].
 using CrossingRate = std::function<Bounded(const CrossingSums&)>;
 
-/// The values that crossings of a line reach once in some years: the largest of the crossings that they and all larger
-/// ones together reach so often, and the same by the bounds of their frequency. docs/barrier.md, "By return period".
+/// The values that blocks reach at a line once in some years: the largest value such that it and all larger ones
+/// together come so often, and the same by the bounds of their frequency. A block that broke counts once, with the
+/// largest value of its pieces. docs/barrier.md, "By return period".
 ///
 /// 0 where crossings are rarer than that. The upper bound is infinite where even the bound for no crossing is more
 /// frequent: more trajectories are needed.

@@ -29,11 +29,15 @@ Dataset earlier_file(const fs::path& path) {
                    "give a new name, or remove it yourself");
 }
 
-/// Layers that were edited after Talus had written them: it writes dates of 1970, editors that of the change.
+/// Layers and styles that were edited after Talus had written them: it writes dates of 1970, editors that of the
+/// change.
 std::vector<std::string> edited_layers(GDALDataset& file) {
   std::vector<std::string> edited;
-  OGRLayer* const rows =
-      file.ExecuteSQL("SELECT table_name FROM gpkg_contents WHERE last_change NOT LIKE '1970-%'", nullptr, nullptr);
+  std::string sql = "SELECT table_name FROM gpkg_contents WHERE last_change NOT LIKE '1970-%'";
+  if (file.GetLayerByName(kStylesTable) != nullptr)
+    sql += std::string(" UNION SELECT '") + kStylesTable + "' FROM " + kStylesTable +
+           " WHERE update_time NOT LIKE '1970-%'";
+  OGRLayer* const rows = file.ExecuteSQL(sql.c_str(), nullptr, nullptr);
   if (rows == nullptr) return edited;
   while (const Feature row{rows->GetNextFeature()}) edited.emplace_back(row->GetFieldAsString(0));
   file.ReleaseResultSet(rows);
@@ -84,7 +88,7 @@ OutputFile::OutputFile(const fs::path& path, const std::string& extension, bool 
                        const std::vector<std::string>& layers)
     : staged_(StagedPath::Kind::File, checked(path, extension, overwrite, layers), extension) {
   parents_.make(staged_.path().parent_path());
-  refuse_unwritable(fs::is_symlink(path) ? staged_.path().parent_path() : path.parent_path());
+  refuse_unwritable(folder_written(path));
 }
 
 void OutputFile::protect(const fs::path& input) const {

@@ -28,6 +28,11 @@ fs::path behind_links(const fs::path& path) {
   return error ? fs::absolute(path).lexically_normal() : full;
 }
 
+fs::path folder_written(const fs::path& file) {
+  std::error_code none;
+  return fs::is_symlink(file, none) ? behind_links(file).parent_path() : file.parent_path();
+}
+
 void refuse_unwritable(const fs::path& folder) {
   const fs::path place = folder.empty() ? fs::current_path() : folder;
   if (access(place.c_str(), W_OK | X_OK) == 0) return;

@@ -82,6 +82,10 @@ std::string command_to_declare(const std::string& path, const std::string& store
   int given = 0;
   const double nodata = file->GetRasterBand(1)->GetNoDataValue(&given);
   if (given == 0) return edit_command(path, "-a_nodata " + stored);
+  const bool plain = (file->GetRasterBand(1)->GetMaskFlags() & GMF_PER_DATASET) == 0 &&
+                     file->GetRasterBand(1)->GetScale() == 1.0 && file->GetRasterBand(1)->GetOffset() == 0.0;
+  if (!plain)  // gdal_calc.py would lose them
+    return "a copy in which " + text_of(nodata) + ", the nodata value that the file has already, stands in its place";
   return "gdal_calc.py -A " + shell_word(path) + " --calc='where(A==" + stored + "," + text_of(nodata) +
          ",A)' --NoDataValue=" + text_of(nodata) +
          " --type=Float32 --outfile=mended.tif (the file has the nodata value " + text_of(nodata) + " already)";

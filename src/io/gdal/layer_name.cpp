@@ -7,6 +7,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "csv_table.hpp"
 #include "talus/base/shell.hpp"
 
 namespace talus::io {
@@ -58,9 +59,8 @@ std::string spelling_of_layer(const std::string& name) {
     std::error_code none;
     const std::string file = name.substr(0, at), rest = name.substr(at + 1);
     if (!std::filesystem::is_regular_file(file, none)) continue;
-    const std::string layer = rest.substr(rest.find('=') + 1);  // all of it without a "="
-    return "; its layer is named by " + shell_word(std::filesystem::path(file).filename().string() +
-                                                   "|layername=" + (layer.empty() ? "NAME" : layer));
+    const std::string layer = trimmed(rest.substr(rest.find('=') + 1));  // all of it without a "="
+    return "; its layer is named by " + shell_word(file + "|layername=" + (layer.empty() ? "NAME" : layer));
   }
   return {};
 }

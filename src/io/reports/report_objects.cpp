@@ -120,11 +120,11 @@ Markup not_assessed_row(const std::string& name, const ObjectsPart& part, bool c
 }
 
 /// "120 [80 to 300]": the return period of a frequency with its bounds; without an event the lower bound alone. Where
-/// the frequency has no upper bound "at most 120", or "not known".
+/// the frequency has no upper bound "120 [300 or less]", or "not known".
 std::string years_text(std::optional<double> frequency, std::optional<double> low, std::optional<double> high) {
   const auto once_in = [](std::optional<double> f) { return f && *f > 0.0 ? readable(1.0 / *f) : std::string(); };
   const std::string years = once_in(frequency), least = once_in(high), most = once_in(low);
-  if (!high) return years.empty() ? "not known" : "at most " + years;
+  if (!high) return years.empty() ? "not known" : years + " [" + most + " or less]";
   if (least.empty()) return years.empty() ? "no event" : years;
   return (years.empty() ? "no event" : years) + " [" + least + (most.empty() ? " or more]" : " to " + most + "]");
 }
@@ -144,8 +144,8 @@ Markup object_row(const ObjectsPart::Object& object, const std::vector<std::stri
   Markup row =
       "<tr><td>"_html + object.name +
       (part ? " (" + percent(object.without_height, 2) + " of it not assessed: the DEM has no height there)" : "") +
-      "</td><td class='n'>" + (part ? "at least " : "") + with_digits(object.frequency, 3) + " [" +
-      with_digits(object.low, 3) + ", " + (part ? "?" : with_digits(*object.high, 3)) + "]</td><td class='n'>" +
+      "</td><td class='n'>" + with_digits(object.frequency, 3) + " [" + with_digits(object.low, 3) +
+      (part ? " or more" : ", " + with_digits(*object.high, 3)) + "]</td><td class='n'>" +
       years_text(object.frequency, object.low, object.high) + "</td>";
   for (const std::string& years : object.years) row += "<td class='n'>"_html + years + "</td>";
   if (!classes.empty()) row += "<td>"_html + class_text(object, classes) + "</td>";

@@ -222,7 +222,7 @@ RunPageFile::RunPageFile(const fs::path& file, bool overwrite, const fs::path& f
                        ": is there and no page of talus report, so it is not replaced; give another name by -o");
   }
   parents_.make(file_.parent_path());
-  refuse_unwritable(fs::is_symlink(file, none) ? file_.parent_path() : file.parent_path());
+  refuse_unwritable(folder_written(file));
 }
 
 void RunPageFile::write(const std::string& page) const {

@@ -340,7 +340,7 @@ std::vector<std::string> ObjectLayer::hits_text(const HazardRules& rules, const 
     if (f.value > 0.0)
       lines.push_back(name + "hit " + with_digits(f.value, 3) + " times per year, once in " + readable(1.0 / f.value) +
                       " years (95 %: " + with_digits(f.low, 3) +
-                      (lack.empty() ? " to " + with_digits(f.high, 3) : " at least") + " per year)" + lack);
+                      (lack.empty() ? " to " + with_digits(f.high, 3) : " or more") + " per year)" + lack);
     else
       lines.push_back(name + never_hit_text(hits[i]) +
                       (lack.empty() ? "; at most " + with_digits(f.high, 3) + " times per year (95 %)" : lack));

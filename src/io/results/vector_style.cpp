@@ -43,9 +43,10 @@ Legend slope_legend() {
   return {{45.0, 50.0, 55.0, 60.0, 70.0}, 1.0, "deg", Palette::Viridis};
 }
 
-/// Objects with no hit per year have no return period and a class of their own; those off the map have no class.
+/// Objects with no hit per year have no return period and a class of their own. Those off the map, and those without a
+/// hit of which a part is not assessed (no upper bound), have no class: they may be hit.
 constexpr const char* kReturnPeriod =
-    R"(CASE WHEN "trajectories" IS NULL THEN NULL ELSE coalesce("return_period", 1e99) END)";
+    R"(CASE WHEN "frequency_upper" IS NULL THEN "return_period" ELSE coalesce("return_period", 1e99) END)";
 /// [kJ], of the largest speed of the path and the mass at its end: too low for a block that broke after it was fastest.
 /// The layer has no mass of each place.
 constexpr const char* kLargestEnergy = R"(0.0005 * "mass_kg" * "max_speed_ms" ^ 2)";

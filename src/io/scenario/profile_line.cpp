@@ -41,9 +41,19 @@ std::vector<double> shares_at_patches(const Surface& surface, const Eigen::Vecto
   return shares;
 }
 
+/// Numbers of the vertices of a line that are no closer than `least` to the one before: without the slips of a hand and
+/// the scatter of a GPS.
+std::vector<int> vertices_apart(const OGRLineString& line, double least) {
+  std::vector<int> apart{0};
+  for (int i = 1; i < line.getNumPoints(); ++i)
+    if (std::hypot(line.getX(i) - line.getX(apart.back()), line.getY(i) - line.getY(apart.back())) >= least)
+      apart.push_back(i);
+  return apart;
+}
+
 /// The first vertex on the way to which a line meets itself: it touches or crosses an earlier part, or turns by more
 /// than 150 degrees, as a line that is drawn there and back; nothing if it passes each place once.
-std::optional<int> vertex_back(const OGRLineString& line, double step) {
+std::optional<int> vertex_back(const OGRLineString& line) {
   const double kBack = -std::cos(radians(30.0));
   std::optional<int> found;
   for (int i = 2; i < line.getNumPoints() && !found; ++i) {
@@ -51,8 +61,7 @@ std::optional<int> vertex_back(const OGRLineString& line, double step) {
       return Eigen::Vector2d(line.getX(k) - line.getX(k - 1), line.getY(k) - line.getY(k - 1));
     };
     const Eigen::Vector2d in = way(i - 1), out = way(i);
-    const bool long_enough = in.norm() > step && out.norm() > step;  // else a slip of the hand
-    if (long_enough && in.dot(out) < kBack * in.norm() * out.norm()) found = i;
+    if (in.dot(out) < kBack * in.norm() * out.norm()) found = i;
   }
   const auto meets_itself = [&](int last) {
     OGRLineString part;
@@ -65,15 +74,21 @@ std::optional<int> vertex_back(const OGRLineString& line, double step) {
   return crossed;
 }
 
-/// Throws InputError if the line passes a place twice: x would stand for two grounds of one place.
+/// Throws InputError if the line passes a place twice, by more than a cell: x would stand for two grounds of one place.
 void refuse_way_back(const OGRLineString& line, double step, const std::string& path, const Terrain& terrain) {
-  const auto vertex = vertex_back(line, step);
-  if (!vertex) return;
-  const MapPlace place(terrain.geo, terrain.heights.grid);
+  const Grid& grid = terrain.heights.grid;
+  const std::vector<int> apart = vertices_apart(line, std::max({step, grid.cell_x, grid.cell_y}));
+  OGRLineString drawn;
+  for (const int i : apart) drawn.addPoint(line.getX(i), line.getY(i));
+  const auto back = vertex_back(drawn);
+  if (!back) return;
+  const int vertex = apart[static_cast<std::size_t>(*back)];
+  const MapPlace place(terrain.geo, grid);
   throw InputError(path + ": the line runs back over itself or crosses itself before its vertex " +
-                   std::to_string(*vertex + 1) + " (" + with_decimals(place.x(line.getX(*vertex)), 1) + ", " +
-                   with_decimals(place.y(line.getY(*vertex)), 1) +
-                   "), must pass each place once: draw it down the fall line");
+                   std::to_string(vertex + 1) + " (" + with_decimals(place.x(line.getX(vertex)), 1) + ", " +
+                   with_decimals(place.y(line.getY(vertex)), 1) +
+                   "), must pass each place once: draw it down the fall line, or smooth a track that was surveyed "
+                   "(ogr2ogr -simplify)");
 }
 
 }  // namespace

@@ -48,14 +48,25 @@ TEST(ValuesOnceIn, AreZeroWhereCrossingsAreRarer) {
   EXPECT_EQ(heights[2].high, 0.0);
 }
 
-/// Ten pieces of one block are one event ten times: the bounds widen.
-TEST(ValuesOnceIn, CountThePiecesOfABlockTogether) {
+/// Ten blocks of ten pieces, the largest of 10, 20, ... 100 m: once in 250 years come the four largest blocks.
+TEST(ValuesOnceIn, CountABlockOnceByItsLargestPiece) {
   std::vector<LineCrossing> pieces = hundred_heights();
   for (LineCrossing& piece : pieces) piece.block = static_cast<std::size_t>(piece.height - 1.0) / 10;
-  const Bounded apart = heights_once_in({50.0}, hundred_heights())[0], together = heights_once_in({50.0}, pieces)[0];
-  EXPECT_EQ(together.value, apart.value);
-  EXPECT_LT(together.low, apart.low - 10.0);
-  EXPECT_GT(together.high, apart.high);
+  const auto heights = heights_once_in({250.0, 1000.0 / 11.0}, pieces);
+  EXPECT_EQ(heights[0].value, 70.0);
+  EXPECT_EQ(heights[1].value, 0.0) << "ten blocks in a thousand years, not a hundred";
+}
+
+/// A lower bound that falls from 1.2 to 0.8 at the fourth crossing and comes back: the first that is enough counts.
+TEST(ValuesOnceIn, OfALowerBoundThatFallsTheFirstCounts) {
+  std::vector<LineCrossing> crossings;
+  for (std::size_t i = 0; i < 5; ++i)
+    crossings.push_back({.height = 5.0 - static_cast<double>(i), .weight = 1.0, .block = i, .piece = i});
+  const auto rate = [](const CrossingSums& counted) {
+    constexpr double kLow[] = {0.0, 0.3, 0.6, 1.2, 0.8, 1.5};
+    return Bounded{counted.sum, kLow[static_cast<std::size_t>(counted.sum)], 2.0 * counted.sum};
+  };
+  EXPECT_EQ(values_once_in(std::vector{1.0}, crossings, &LineCrossing::height, rate)[0].low, 3.0);
 }
 
 }  // namespace

@@ -320,8 +320,8 @@ GERMAN = {
         "Energien der Überschreitungskarten [kJ], mit Kommas und ohne Leerzeichen: 30,300 (Vorgabe)",
     "a ground that talus calibrate or diagnose has fitted (fitted.toml), in place of --preset":
         "ein Boden, den Kalibrieren oder Diagnose angepasst hat (fitted.toml), anstelle von «Boden»",
-    "c of the impact law (0.25): a lower one gives higher energies and jumps":
-        "c des Aufprallgesetzes (0.25): ein kleineres gibt höhere Energien und Sprünge",
+    "c of the impact law (0.25): a lower one gives higher energies and jumps, longer paths and more hits":
+        "c des Aufprallgesetzes (0.25): ein kleineres gibt höhere Energien und Sprünge, längere Bahnen und mehr Treffer",
     "trajectories in one instruction; as many as the processor has where it is not given; the results are the same":
         "Sturzbahnen in einem Befehl; so viele, wie der Prozessor kann, wenn nicht angegeben; die Ergebnisse sind dieselben",
     "per source cell": "pro Ausbruchzelle",

@@ -12,6 +12,9 @@ void refuse_dangling_link(const std::filesystem::path& path);
 /// and the link stays.
 std::filesystem::path behind_links(const std::filesystem::path& path);
 
+/// The folder into which a file is written: as it was given, for messages; of a link that of the place it leads to.
+std::filesystem::path folder_written(const std::filesystem::path& file);
+
 /// Throws InputError if no file can be written into a folder: before the work, not after it. @param folder  empty: the
 /// current one
 void refuse_unwritable(const std::filesystem::path& folder);

@@ -13,7 +13,7 @@
 namespace talus::io {
 
 /// The height of the block's centre above the ground, as a quantity: where it is above h_i the block passes the net.
-inline constexpr const char* kCentre = "centre";
+inline constexpr const char* kCentre = "centre height";
 
 /// Fitted distribution of one quantity, and the probabilities that design values are exceeded. In the units of the
 /// files.
