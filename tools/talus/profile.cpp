@@ -190,8 +190,9 @@ void add_profile(CLI::App& app, Action& action) {
   add_places(*command, "--screen-x", flags.screens,
              "where crossings are recorded, in m along the line, with commas and no spaces: 110,199");
   add_surface(*command, flags.run.surface);
-  with(command->add_option("--deformation-coefficient", flags.run.deformation_coefficient,
-                           "c of the impact law (0.25): a lower one gives higher energies and jumps, longer paths and more hits"),
+  with(command->add_option(
+           "--deformation-coefficient", flags.run.deformation_coefficient,
+           "c of the impact law (0.25): a lower one gives higher energies and jumps, longer paths and more hits"),
        scalar_of("model.deformation_coefficient"));
   with(command->add_option("-o,--out", options->out, "new folder for the results")->required(), new_folder());
   command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");

@@ -70,8 +70,9 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
   add_surface(command, flags.surface);
   with(command.add_option("--diameter", flags.diameter, "of the blocks [m]"),
        number_of(talus::bounds_of("blocks.diameter")));
-  with(command.add_option("--deformation-coefficient", flags.deformation_coefficient,
-                          "c of the impact law (0.25): a lower one gives higher energies and jumps, longer paths and more hits"),
+  with(command.add_option(
+           "--deformation-coefficient", flags.deformation_coefficient,
+           "c of the impact law (0.25): a lower one gives higher energies and jumps, longer paths and more hits"),
        scalar_of("model.deformation_coefficient"));
   with(command.add_option("--frequency", flags.frequency, "events per year of all sources together, for talus hazard"),
        number_of(talus::bounds_of("frequency.total")));
