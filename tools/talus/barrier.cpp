@@ -357,8 +357,7 @@ void add_return_periods(BarrierReport& report, std::span<const talus::LineCrossi
   if (!weighting.scale) return;
   if (years.empty()) years = talus::HazardMatrix{}.years;
   std::ranges::sort(years);
-  const auto [again, end] = std::ranges::unique(years);
-  years.erase(again, end);
+  years.erase(std::unique(years.begin(), years.end()), years.end());
   const auto once_in = [&](const auto& value_of) {
     return talus::values_once_in(years, crossings, value_of,
                                  [&](const talus::CrossingSums& counted) { return *weighting.per_year(counted); });

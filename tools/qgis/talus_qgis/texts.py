@@ -243,6 +243,7 @@ GERMAN = {
         "Talus startet das Programm talus dieses Rechners. Seine Dokumentation erklärt jeden Parameter.",
     "round": "Runde",
     "deg": "Grad",
+    "years": "Jahre",
     # of the legends, whose words the program writes: src/io/results/style.cpp, vector_style.cpp
     "up to {}{}": "bis {}{}",
     "above {}{}": "über {}{}",

@@ -44,7 +44,7 @@ MUTANTS = [
     ("src/simulate/plan/plan.cpp", "(uniform(place[1]) - 0.5) * grid.cell_y", "uniform(place[1]) * grid.cell_y", "*Release*:*Plan*"),
     ("src/simulate/plan/plan.cpp", "const Random random(scenario.seed, source, block, Purpose::Release);", "const Random random(scenario.seed, source, block / 2, Purpose::Release);", "*Release*:*Plan*:*Stream*"),
     # the tallies
-    ("src/simulate/tally/cell_record.cpp", "maximum[q] = std::max(maximum[q], sums.largest);", "maximum[q] = sums.largest;", "*Tally*:*Cell*"),
+    ("src/simulate/tally/cell_record.cpp", "maximum[q] = std::max(maximum[q], summary.largest);", "maximum[q] = summary.largest;", "*Tally*:*Cell*"),
     ("src/simulate/tally/cell_record.cpp", "  add_checked(exits, other.exits);\n", "", "*Tally*:*Cell*:*Merge*"),
     ("include/talus/simulate/tally/checked_sum.hpp", "value * units + 0.5", "value * units", "*Tally*:*Cell*:*Mean*"),
     ("src/simulate/tally/tally.cpp", "values[i] > limit ? 1U : 0U", "values[i] >= limit ? 1U : 0U", "*Tally*:*Exceed*:*Thresh*"),
@@ -65,6 +65,8 @@ MUTANTS = [
     ("src/products/hazard_matrix.cpp", "frequencies[i] * matrix.years[column] >= kOnce", "frequencies[i] * matrix.years[column] > kOnce + 0.1", "*Hazard*:*Matrix*:*Class*"),
     ("src/products/hazard_matrix.cpp", "highest = std::max(highest, matrix.classes[i][column])", "highest = matrix.classes[i][column]", "*Hazard*:*Matrix*:*Class*"),
     ("src/products/barrier_design.cpp", "0.5 * d.mass * d.speed * d.speed", "d.mass * d.speed * d.speed", "*Barrier*:*Design*"),
+    ("src/products/return_values.cpp", "if (!blocks.insert(crossing->block).second) continue;", "", "*OnceIn*"),
+    ("src/simulate/tally/cell_record.cpp", "if (full) break;", "", "*Tally*:*Cell*:*Histogram*"),
     ("src/products/barrier_design.cpp", "c.energy() > design.mel", "c.energy() > design.sel", "*Barrier*:*Design*"),
     ("src/products/weibull.cpp", "first - 1.0 / shape - mean", "first - 0.9 / shape - mean", "*Weibull*"),
     ("src/products/weibull.cpp", "std::exp(-std::pow(x / scale, shape))", "1.0 - std::exp(-std::pow(x / scale, shape))", "*Weibull*"),
