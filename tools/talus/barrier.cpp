@@ -17,7 +17,6 @@
 #include "talus/io/gdal/crossings_file.hpp"
 #include "talus/io/reports/barrier_report.hpp"
 #include "talus/io/results/run_folder.hpp"
-#include "talus/io/results/run_record.hpp"
 #include "talus/products/hazard_matrix.hpp"
 #include "talus/products/return_values.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"

@@ -9,6 +9,7 @@
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/left_blocks.hpp"
 #include "talus/io/reports/barrier_report.hpp"
+#include "talus/io/results/run_record.hpp"
 #include "talus/simulate/screens/screens.hpp"
 
 using talus::InputError;
