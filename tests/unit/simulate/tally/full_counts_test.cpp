@@ -67,6 +67,29 @@ TEST(FullCounts, OfACell) {
   EXPECT_THROW(record.add(values), InputError);
 }
 
+/// Counts of 8 bits that are full at 255, of one quantity before the others: the histograms of a cell, which are
+/// counted together, are those that are filled one by one, and hold every value.
+TEST(FullCounts, OfHistogramsThatAreCountedTogether) {
+  CellRecord record;
+  CellValues values;
+  values.make_room(200);
+  values.count = 200;
+  PerQuantity<LogHistogram> alone;
+  for (std::size_t q = 0; q < kQuantities; ++q)
+    for (std::size_t i = 0; i < 200; ++i) values.lists[q][i] = q == 0 || i % q == 0 ? 5.0F : static_cast<float>(i + 1);
+  for (int batch = 0; batch < 4; ++batch) {
+    record.add(values);
+    for (std::size_t q = 0; q < kQuantities; ++q) alone[q].add({values.lists[q].data(), values.count});
+  }
+  for (std::size_t q = 0; q < kQuantities; ++q) {
+    ByteWriter together, one_by_one;
+    record.histogram[q].save(together);
+    alone[q].save(one_by_one);
+    EXPECT_EQ(record.histogram[q].count(), 800U);
+    EXPECT_EQ(together.bytes(), one_by_one.bytes());
+  }
+}
+
 TEST(ForgedBytes, OfAHistogramBeyondTheLargestNumber) {
   for (const std::uint16_t first : {std::uint16_t{4096}, std::uint16_t{65535}}) {
     ByteWriter out;
