@@ -172,7 +172,7 @@ class Files(OnASlope):
                                            "screens.csv", "stops.csv"])
         layers = {layer.GetName(): layer.GetFeatureCount() for layer in ogr.Open(self.path("out/profile.gpkg"))}
         self.assertEqual(layers, {"profile": 1, "stops": 500, "crossings": len(self.rows("screens.csv")),
-                                  "trajectories": 20, "bins": 80, "layer_styles": 4})
+                                  "trajectories": 20, "bins": 80, "layer_styles": 5})
         fields, point = rows_of(self.path("out/profile.gpkg"), "stops")[7]
         self.assertEqual(fields["x"], stops[7]["x"])
         self.assertAlmostEqual(point.GetX(), stops[7]["x"], 3)

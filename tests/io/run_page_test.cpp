@@ -247,7 +247,7 @@ TEST(BarrierNotes, OfAllBarriersAreToldOnce) {
   EXPECT_EQ(count(barriers_html({north}).text(), "Note: of the run<"), 1U);
 }
 
-/// Of an object whose larger part is not assessed nothing is told that looks safe.
+/// An object whose larger part is not assessed looks safe in no cell of its row.
 TEST(ObjectsTable, SaysWhatIsNotAssessed) {
   ObjectsPart::Object object{"km 1.6", "cliff", 0.0, 0.0, std::nullopt, 0.67, {"not known"}, {}};
   object.hazard_class = object.lowest_class = 0;

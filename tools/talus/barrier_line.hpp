@@ -18,7 +18,8 @@ const talus::Screen& screen_of(const talus::io::RunSummary& run, const std::stri
 /// Share of the screen where the DEM has no height.
 double without_height(const talus::io::RunSummary& run, const talus::Screen& screen);
 
-/// What crosses a screen in a run. Throws InputError if nothing does, or the files are not as `talus run` leaves them.
+/// Crossings of a screen in a run. Throws InputError if there are none, or the files are not as `talus run` leaves
+/// them.
 talus::io::CrossingTable simulated_crossings(const talus::io::RunSummary& run, const std::string& folder,
                                              const talus::Screen& screen);
 

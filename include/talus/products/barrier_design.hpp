@@ -9,9 +9,8 @@
 
 namespace talus {
 
-inline constexpr double kLargestNetCapacity =
-    15e6;                                    ///< above that of any net [J]. docs/barrier.md, "Barriers in the walk"
-inline constexpr double kHighestNet = 12.0;  ///< above the height of any net [m]
+/// Bounds above every net: of its capacity [J] and of its height [m]. docs/barrier.md, "Barriers in the walk".
+inline constexpr double kLargestNetCapacity = 15e6, kHighestNet = 12.0;
 
 /// Partial factors of UNI 11211-4. docs/barrier.md, "Design values".
 struct DesignFactors {

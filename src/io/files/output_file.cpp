@@ -62,7 +62,7 @@ void refuse_foreign(const fs::path& path, const std::vector<std::string>& layers
                      joined(edited) + "), and --overwrite would lose that; give a new name, or remove it yourself");
 }
 
-/// Where the file is written. Throws InputError if none can be.
+/// The place to which the file is written. Throws InputError if nothing can be written there.
 fs::path checked(const fs::path& path, const std::string& extension, bool overwrite,
                  const std::vector<std::string>& layers) {
   const std::string name = path.string();

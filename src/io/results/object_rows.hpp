@@ -22,7 +22,7 @@ Figures figures_of(const HazardRules& rules, const ObjectHits& hits, double with
 /// Attributes of the input that are copied: those that are not named as a column of the results.
 std::vector<int> copied_attributes(OGRFeature& model, const Figures& figures);
 
-/// What the layer and the table hold of an object.
+/// Row of an object, in the layer and in the table.
 struct ObjectRow {
   const std::string& name;
   OGRFeature& from;  // of the input

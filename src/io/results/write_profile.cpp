@@ -229,6 +229,7 @@ void ProfileWriter::finish(const ProfileResults& results) {
   s.file.set_style("stops", style_of(StyledLayer::Stops));
   if (s.crossings != nullptr) s.file.set_style("crossings", style_of(StyledLayer::Crossings));
   s.file.set_style("profile", outline_style(1));
+  if (s.paths != nullptr) s.file.set_style("trajectories", outline_style(1));
   s.file.finish();
   write_text(s.folder / "stops.csv", s.stops_csv);
   write_text(s.folder / "envelope.csv", envelope_csv(results.bins, profile.from(), released));

@@ -33,7 +33,8 @@ TEST(ValuesOnceIn, AreThoseOfSoManyCrossings) {
   EXPECT_EQ(height.low, 83.0);
 }
 
-/// Of no crossing the bound is 3.69, of one 5.57 (Garwood).
+/// The upper bound of no crossing is 3.69, that of one 5.57 (Garwood): four in 1000 years are within the second, three
+/// are within the first.
 TEST(ValuesOnceIn, HaveNoUpperBoundWhereTheRunIsTooSmall) {
   const auto heights = heights_once_in({1000.0 / 4.0, 1000.0 / 3.0}, hundred_heights());
   EXPECT_EQ(heights[0].high, 100.0);

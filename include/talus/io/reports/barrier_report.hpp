@@ -36,7 +36,7 @@ struct StretchRow {
   std::optional<Bounded> per_year;  ///< crossings [1/year]
 };
 
-/// What crossings of the line reach once in some years. In the units of the files.
+/// Energy, jump height and speed that blocks reach at the line once in some years. In the units of the files.
 struct OnceIn {
   double years;
   Bounded energy, height, speed;  ///< [kJ], [m], [m/s]; 0: crossings are rarer; an infinite bound: not known

@@ -23,7 +23,7 @@ struct ResultsUse {
 /// None if there is no run.json that can be read. Throws InputError if it is none of a run.
 std::vector<std::string> notes_of_run(const std::filesystem::path& folder, const ResultsUse& use);
 
-/// That a later version than this one wrote results: later by its first or second number. Nothing if none did.
+/// A note if results are of a later version than this program: later by its first or second number.
 /// @param written  the version in run.json, such as "0.1.0"
 std::optional<std::string> later_version_note(const std::string& written);
 
