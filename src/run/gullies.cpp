@@ -21,12 +21,15 @@ std::vector<std::string> gully_warnings(const io::GullyRecord& gullies, std::uin
                                         const std::string& whole) {
   if (!(static_cast<double>(gullies.blocks) > io::kWarnedGullyShare * static_cast<double>(released))) return {};
   std::string text = share_text(gullies.blocks, released) + " of the " + whole + " (" + count_text(gullies.blocks) +
-                     ") stay in gullies steeper than phi: there the cells of the DEM are a staircase whose treads hold "
-                     "blocks that would go on in the real gully, so that the maps may end too early";
+                     ") " + std::string(io::kGullyWarning) +
+                     ": there the cells of the DEM are a staircase whose treads hold blocks that would go on in the "
+                     "real gully, so that the maps may end too early";
   if (const auto& worst = gullies.worst)
     text += "; most stay at x = " + with_decimals(worst->x, 1) + ", y = " + with_decimals(worst->y, 1) + ": " +
             count_text(worst->blocks) + " of the " + count_text(worst->passages) + " blocks that cross this cell";
-  return {text + "; take a survey with smaller cells (resampling does not show more of a gully)"};
+  return {text +
+          "; take a survey with smaller cells; else run on this DEM resampled, too, and take the higher hazard: "
+          "docs/prepare-data.md, \"Resampling\""};
 }
 
 }  // namespace talus::run

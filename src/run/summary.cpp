@@ -69,9 +69,13 @@ static std::vector<std::string> warnings_of_ends(const Totals& totals, const std
   };
   tell(totals.left_blocks, io::kWarnedLeftShare, left);
   tell(totals.ended(End::Trapped), io::kWarnedTrappedShare,
-       "were trapped in pits or between walls, on ground too steep to rest on: "
-       "where these are not in the real terrain, " +
-           trapped);
+       std::string(io::kTrappedWarning) +
+           ", on ground too steep to rest on: where these are not in the real terrain, " + trapped);
+  if (!io::too_many_limits(totals))
+    tell(totals.limited_blocks, 0.0,
+         std::string(io::kLimitWarning) +
+             " time, impacts or vertices: they would go farther; raise [model] time_limit or impact_limit (end = limit "
+             "of the stops shows where)");
   return warnings;
 }
 

@@ -205,11 +205,11 @@ class Effects(Case):
         (told,) = self.sizes(0.3)
         self.assertIn("0.3 m", told)
         self.assertIn("upper-talus-3d (1 to 1.4 m)", told)
-        self.assertIn("smaller blocks: they run too far and too fast", told)
+        self.assertIn("smaller blocks go farther and faster than those", told)
         self.assertNotIn("unsafe", told)
         (told,) = self.sizes(3)
         self.assertIn("larger blocks: run-out and speed too low (unsafe)", told)
-        self.assertNotIn("too fast", told)
+        self.assertNotIn("smaller blocks", told)
         self.assertEqual(len(self.sizes(3, "--preset", "quarry-floor-2d")), 1)
         plan = self.run_well("check", "--dem", self.path("dem.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "0.3").stdout
         self.assertEqual(plan.count("block sizes: "), 1)

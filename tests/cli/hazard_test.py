@@ -576,6 +576,16 @@ class Hazard(OneThread, KeptRuns, Case):
         self.assertIn('the run ended with status "too many trajectories ended at a limit": do not use its results', done.stderr)
         self.assertTrue(any("do not use its results" in warning for warning in self.read_json("out/hazard.json")["warnings"]))
 
+    def test_repeats_that_maps_end_too_early(self):
+        self.simulated()
+        told = ["4 % of the trajectories (4) were trapped in pits or between walls, on ground", "5 % of the sample (5) stay in gullies "
+                "steeper than phi: there", "0.01 % of the trajectories (1) still moved when they reached the limit of time, impacts"]
+        self.write("out/run.json", json.dumps({**self.record(), "warnings": [*told, "73 cells of the DEM have a way down"]}))
+        done = self.run_well("hazard", self.path("out"))
+        for words in told:
+            self.assertIn(f"talus: warning: {words}", done.stderr)
+        self.assertNotIn("73 cells", done.stderr)
+
     def test_contradicting_frequencies(self):
         self.write("s.toml", RUN + "[frequency]\nper_area = 0.01\n")
         self.refused("must be given by one of them", "run", self.path("s.toml"), "-o", self.path("out"))

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,12 +10,17 @@ namespace talus {
 
 /// The energy-line angles of the blocks that stopped or were trapped: counts of steps of 0.01 degrees, equal in any
 /// order. Blocks that a barrier caught would have gone on, and those that left are not at their end: they do not count.
-/// docs/products.md, "Energy line".
+/// Beside a release the angle says how rough the ground is there, not how far blocks go: if any ends far away, only
+/// those count that do. docs/products.md, "Energy line".
 class EnergyLines {
  public:
+  static constexpr double kFar = 100.0;  ///< in plan [m]
+
   void add(std::span<const StopRow> rows);
 
-  std::uint64_t count() const { return count_; }
+  /// Those that count end farther away than this in plan [m]: `kFar`, or 0 if none does.
+  double farther_than() const { return far() ? kFar : 0.0; }
+  std::uint64_t count() const { return count_[far()]; }
   /// The smallest angle [deg]. Only if there is one.
   double least() const { return percentile(0.0); }
   /// The k-th smallest angle, k = ceil(share n), at least 1, rounded to 0.01 [deg]. Only if there is one.
@@ -22,9 +28,12 @@ class EnergyLines {
 
  private:
   static constexpr int kPerDegree = 100;
+  using Counts = std::vector<std::uint64_t>;  // from -90 degrees on
 
-  std::uint64_t count_ = 0;
-  std::vector<std::uint64_t> counts_ = std::vector<std::uint64_t>(2 * 90 * kPerDegree + 1);  // from -90 degrees on
+  std::size_t far() const { return count_[1] > 0 ? 1 : 0; }
+
+  std::array<std::uint64_t, 2> count_{};  // of all, and of those that end far away
+  std::array<Counts, 2> counts_{Counts(2 * 90 * kPerDegree + 1), Counts(2 * 90 * kPerDegree + 1)};
 };
 
 }  // namespace talus

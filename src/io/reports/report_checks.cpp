@@ -23,6 +23,9 @@ std::string percent_of(double count, double all) {
   return percent(all > 0.0 ? count / all : 0.0);
 }
 
+/// The largest cells that show benches and gullies [m].
+constexpr double kFineCell = 2.0;
+
 bool warned_of(const RunFacts& run, std::string_view words) {
   return std::ranges::any_of(run.warnings, [&](const std::string& w) { return w.find(words) != std::string::npos; });
 }
@@ -131,16 +134,17 @@ void check_sizes(const RunFacts& run, Checks& checks) {
                       "A " + unit + " much larger than a block hides the ground that the block meets."});
   } else {
     const auto& [small, large] = *run.diameters;
-    const bool wide = run.grid.cell_x > 5.0 * small;
-    checks.push_back({wide ? Mark::Look : Mark::Fine, title,
-                      sizes + ", blocks of " + with_digits(small, 3) + " to " + with_digits(large, 3) + " m: a " +
-                          unit + " is " + with_digits(run.grid.cell_x / large, 2) + " to " +
-                          with_digits(run.grid.cell_x / small, 2) + " diameters wide",
-                      run.of_profile
-                          ? "The ground between the steps is smooth; its roughness is in the ground's parameters. A "
-                            "profile over a DEM shows no more than the cells of the DEM, however short the step."
-                          : "The ground between the centres of the cells is a smooth patch; its roughness is in the "
-                            "ground's parameters. Compare with a finer DEM where there is one."});
+    const bool wide = run.grid.cell_x > 5.0 * small || (!run.of_profile && run.grid.cell_x > kFineCell);
+    checks.push_back(
+        {wide ? Mark::Look : Mark::Fine, title,
+         sizes + ", blocks of " + metres({small, large}) + ": a " + unit + " is " +
+             with_digits(run.grid.cell_x / large, 2) +
+             (small < large ? " to " + with_digits(run.grid.cell_x / small, 2) : std::string()) + " diameters wide",
+         run.of_profile ? "The ground between the steps is smooth; its roughness is in the ground's parameters. A "
+                          "profile over a DEM shows no more than the cells of the DEM, however short the step."
+                        : "The ground between the centres of the cells is a smooth patch; its roughness is in the "
+                          "ground's parameters. Cells above 2 m smooth benches and gullies away, and lower jumps "
+                          "(unsafe): compare with a finer DEM where there is one."});
   }
   const bool warned = warned_of(run, kOtherSizes);
   checks.push_back({warned ? Mark::Act : Mark::Fine, "Sizes of the blocks and the fit of the ground",

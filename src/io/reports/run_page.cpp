@@ -78,7 +78,8 @@ std::string ends_text(const RunFacts& run) {
 std::string energy_line_text(const RunFacts& run) {
   if (!run.energy_line) return "";
   const auto& [least, p5, p50] = *run.energy_line;
-  return "least " + with_digits(least, 4) + ", P5 " + with_digits(p5, 4) + ", P50 " + with_digits(p50, 4) + " deg";
+  return "least " + with_digits(least, 4) + ", P5 " + with_digits(p5, 4) + ", P50 " + with_digits(p50, 4) + " deg" +
+         farther_text(run.energy_line_farther);
 }
 
 Markup run_html(const RunReport& report, const std::string& attribution) {

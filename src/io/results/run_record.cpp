@@ -114,6 +114,7 @@ Json ends_of(const Totals& totals) {
 
 Json json_of(const EnergyLines& lines) {
   return {{"stops", lines.count()},
+          {"farther_than_m", lines.farther_than()},
           {"least", lines.least()},
           {"p5", lines.percentile(0.05)},
           {"p50", lines.percentile(0.50)}};
@@ -174,6 +175,10 @@ std::optional<std::string> status_of_result(const std::filesystem::path& folder,
   } catch (const std::exception&) {
     return std::nullopt;  // no such file, or not one of a run
   }
+}
+
+std::string farther_text(double metres) {
+  return metres > 0.0 ? ", of blocks that stop farther away than " + text_of(metres) + " m" : "";
 }
 
 std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {

@@ -30,9 +30,11 @@ bool above(const FittedSizes& sizes, const Range& diameters) {
 std::string direction(bool larger, bool smaller) {
   std::string text;
   if (larger) text += "; larger blocks: run-out and speed too low (unsafe)";
-  if (smaller) text += "; smaller blocks: they run too far and too fast";
+  if (smaller) text += "; smaller blocks go farther and faster than those, against field experience";
   if (text.empty()) text = "; small blocks run faster and jump higher than large ones, against field experience";
-  return text + ": see docs/physics.md, \"Parameter sets\"";
+  return text +
+         ": compare a run with [effects.block-mass] preset = \"measured\"; see docs/physics.md, \"Parameter "
+         "sets\"";
 }
 
 /// Whether block-mass acts with the numbers of its preset on sizes that the preset was not fitted to. At its reference

@@ -51,6 +51,20 @@ TEST(EnergyLines, OfTheBlocksThatStopped) {
   EXPECT_NEAR(lines.percentile(0.05), 30.9, 1e-9) << "the 10th of 200";
   EXPECT_NEAR(lines.percentile(0.5), 39.9, 1e-9);
   EXPECT_NEAR(lines.percentile(1.0), 49.9, 1e-9);
+  EXPECT_EQ(lines.farther_than(), 0.0) << "all stopped at their release";
+}
+
+TEST(EnergyLines, OfThoseFarAwayIfThereAreAny) {
+  StopRow near{}, far{};
+  near.end = far.end = End::Stopped;
+  near.x_release = far.x_release = 10.0F, near.y_release = far.y_release = 20.0F;
+  near.x = 70.0, near.y = 100.0, near.energy_line = static_cast<float>(12.0 / kDegrees);  // 100 m away in plan
+  far.x = 70.1, far.y = 100.0, far.energy_line = static_cast<float>(31.0 / kDegrees);
+  EnergyLines lines;
+  lines.add(std::vector{near, near, far});
+  EXPECT_EQ(lines.farther_than(), 100.0);
+  EXPECT_EQ(lines.count(), 1U);
+  EXPECT_NEAR(lines.least(), 31.0, 1e-9);
 }
 
 }  // namespace

@@ -49,6 +49,16 @@ TEST(WarningsOf, NameTheMaps) {
   EXPECT_TRUE(holds(told[1], "trapped.tif")) << told[1];
 }
 
+TEST(WarningsOf, TellFromTheFirstThatALimitCutShort) {
+  Totals totals = of_hundred(0, 0, 1);
+  EXPECT_TRUE(warnings_of(totals).empty()) << "1 % are an error, which says more";
+  totals.released = 100000;
+  const std::vector<std::string> told = warnings_of(totals);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].rfind("0.001 % of the trajectories (1) still moved", 0), 0U) << told[0];
+  EXPECT_EQ(profile_warnings(totals), told) << "names no map";
+}
+
 TEST(EndsText, SaysWhatTheBlocksLeft) {
   EXPECT_EQ(ends_text(of_hundred(40, 20, 5)), "35 stopped, 40 trapped, 20 left the map, 0 caught, 5 at a limit");
   EXPECT_EQ(ends_text(of_hundred(40, 20, 5), "profile"),
