@@ -24,6 +24,7 @@ struct ObjectsPart {
     /// Numbers of its class, and of those at the bounds of the frequencies; nothing in a table without classes.
     std::optional<std::size_t> hazard_class = {}, lowest_class = {}, highest_class = {};
   };
+  bool with_rotation = false;           ///< of all energies
   std::vector<std::string> thresholds;  ///< [kJ]
   std::vector<Object> objects;          ///< the most often hit first
   std::size_t left_out = 0;
@@ -33,7 +34,8 @@ struct ObjectsPart {
 };
 
 /// Throws InputError if a table is there and cannot be understood. No objects without tables.
-ObjectsPart read_objects_part(const std::filesystem::path& folder);
+/// @param with_rotation  the run counts the energy with rotation
+ObjectsPart read_objects_part(const std::filesystem::path& folder, bool with_rotation = false);
 /// @param pieces   blocks of the run broke
 /// @param classes  names of the classes, by number
 Markup objects_html(const ObjectsPart& part, bool pieces, const std::vector<std::string>& classes = {});
