@@ -24,13 +24,13 @@ struct ObjectsPart {
     /// Numbers of its class, and of those at the bounds of the frequencies; nothing in a table without classes.
     std::optional<std::size_t> hazard_class = {}, lowest_class = {}, highest_class = {};
   };
-  bool with_rotation = false;           ///< of all energies
   std::vector<std::string> thresholds;  ///< [kJ]
   std::vector<Object> objects;          ///< the most often hit first
   std::size_t left_out = 0;
   std::string note;
   std::vector<std::string> not_assessed;  ///< names of objects without figures: the DEM has no height where they lie
   std::size_t not_assessed_left_out = 0;
+  bool with_rotation = false;  ///< of all energies
 };
 
 /// Throws InputError if a table is there and cannot be understood. No objects without tables.
