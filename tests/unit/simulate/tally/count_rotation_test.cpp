@@ -79,7 +79,7 @@ TEST(CountRotation, ABlockOfKnownSpin) {
   EXPECT_FALSE(without.hazard_rules().with_rotation);
 }
 
-TEST(CountRotation, OneTurnOfTheSpinOnAThreshold) {  // exactly 70 kJ: not above 70
+TEST(CountRotation, BetweenTwoNearThresholds) {  // 70 kJ
   Path path = path_of({stay(1, 1, 100, 1)}, End::Stopped);
   path.spins = {{0, 20.0}};
   const Tally tally = tally_with(test::grid_of(8, 8, 1.0, 1.0), {path}, {69.999, 70.001}, true);
