@@ -175,6 +175,10 @@ std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatr
   }
   if (object.width > 0.0)
     for (HazardMap& map : maps) map.map = of_object(std::move(map.map), object);
+  for (HazardMap& map : maps) {
+    map.map.title = with_energy(std::move(map.map.title), rules.with_rotation);
+    for (Map::Band& band : map.map.bands) band.name = with_energy(std::move(band.name), rules.with_rotation);
+  }
   return maps;
 }
 

@@ -149,6 +149,7 @@ std::vector<Map> make_maps(const Scenario& scenario, const Tally& tally) {
   std::vector<Map> maps;
   for (const RunRaster& raster : run_rasters()) {
     Map map = raster.map;
+    map.title = title_of(raster, run);
     map.bands = bands_of(raster, run);
     if (map.bands.empty()) continue;
     const std::vector<double> untouched = untouched_values(raster, run, map.bands.size());

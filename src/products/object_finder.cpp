@@ -94,8 +94,12 @@ std::optional<Touch> touch_of(const Way& way, const HazardObject& object, double
 }
 
 ObjectFinder::ObjectFinder(const Surface& surface, const Barriers& barriers, std::span<const HazardObject> objects,
-                           double radius)
-    : surface_(surface), barriers_(barriers), objects_(objects), near_(surface.grid(), 0) {
+                           double radius, bool with_rotation)
+    : surface_(surface),
+      barriers_(barriers),
+      objects_(objects),
+      with_rotation_(with_rotation),
+      near_(surface.grid(), 0) {
   for (std::uint32_t object = 0; object < objects.size(); ++object) enter(object, radius);
 }
 
@@ -210,11 +214,15 @@ void ObjectFinder::add(const Path& path, const Block& body, std::span<ObjectCont
   Block block = body;
   std::vector<PartOfObject> touched;
   auto next_break = path.breaks.begin();
+  auto next_spin = path.spins.begin();
+  double spin = 0.0;  // [rad/s]
   for (std::size_t i = 0; i < path.spans.size(); ++i) {
     for (; next_break != path.breaks.end() && next_break->span <= i; ++next_break) block = next_break->body;
+    for (; next_spin != path.spins.end() && next_spin->span <= i; ++next_spin) spin = next_spin->spin;
     const Span& span = path.spans[i];
+    const double rotation = with_rotation_ ? block.rotational_energy_kj(spin) : 0.0;
     const auto energy = [&](double share) {
-      return static_cast<float>(0.5e-3 * block.mass * speed_squared_at(span, share));
+      return static_cast<float>(0.5e-3 * block.mass * speed_squared_at(span, share) + rotation);
     };
     const Way way = way_of(span);
     for_each_part(span, [&](const PartOfObject& part) {

@@ -33,7 +33,9 @@ class ObjectFinder {
  public:
   /// @param barriers  of the run: its paths end `caught` at them
   /// @param radius    of the largest block [m]
-  ObjectFinder(const Surface& surface, const Barriers& barriers, std::span<const HazardObject> objects, double radius);
+  /// @param with_rotation  energies count the rotation; else they are translational
+  ObjectFinder(const Surface& surface, const Barriers& barriers, std::span<const HazardObject> objects, double radius,
+               bool with_rotation = false);
 
   /// Adds what a path meets.
   void add(const Path& path, const Block& body, std::span<ObjectContact> contacts) const;
@@ -72,6 +74,7 @@ class ObjectFinder {
   const Surface& surface_;
   const Barriers& barriers_;
   std::span<const HazardObject> objects_;
+  bool with_rotation_;
   Raster<std::int32_t> near_;  // by patch: 0, or 1 + the index of its list
   std::vector<std::vector<std::uint32_t>> lists_;
 };

@@ -23,8 +23,9 @@ class Replay {
          const std::function<bool(double)>& proceed)
       : scenario_(scenario),
         weights_(weights),
-        rules_{EnergyBins(scenario.output.energy_thresholds), weights.scale()},
-        finder_(scenario.surface, scenario.barriers, objects, 0.5 * diameters_of(scenario).high),
+        rules_{EnergyBins(scenario.output.energy_thresholds), weights.scale(), scenario.output.count_rotation},
+        finder_(scenario.surface, scenario.barriers, objects, 0.5 * diameters_of(scenario).high,
+                scenario.output.count_rotation),
         proceed_(proceed),
         per_source_(units_per_source(scenario)),
         units_(std::uint64_t{per_source_} * scenario.sources.size()),

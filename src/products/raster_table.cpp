@@ -329,8 +329,14 @@ RunCounts counts_of(const Scenario& scenario) {
           scenario.surface.grid().cell_x,
           scenario.surface.grid().cell_y,
           scenario.output.passages_below,
-          scenario.output.energy_total,
-          scenario.output.bounds};
+          scenario.output.keeps_total(),
+          scenario.output.bounds,
+          scenario.output.count_rotation};
+}
+
+/// Whether a raster is of energies with rotation that are counted.
+static bool counts_energy(const RunRaster& raster, const RunCounts& run) {
+  return run.with_rotation && raster.thresholds_of == Quantity::Energy;
 }
 
 const std::vector<RunRaster>& run_rasters() {
@@ -355,7 +361,13 @@ std::vector<Map::Band> bands_of(const RunRaster& raster, const RunCounts& run) {
   }
   if (raster.counts_lengths)
     for (Map::Band& band : bands) band.name = with_height(band.name, run.passages_below);
+  if (counts_energy(raster, run))
+    for (Map::Band& band : bands) band.name = with_energy(std::move(band.name), true);
   return bands;
+}
+
+std::string title_of(const RunRaster& raster, const RunCounts& run) {
+  return with_energy(raster.map.title, counts_energy(raster, run));
 }
 
 }  // namespace talus

@@ -102,6 +102,16 @@ TEST_F(HazardFile, ReadsBackWhatWasKept) {
   EXPECT_EQ(left_per_year(heavy), header.rules.scale.total);
 }
 
+/// Another format, so that earlier versions of Talus do not read energies with rotation as translational ones.
+TEST_F(HazardFile, SaysWhetherEnergiesCountTheRotation) {
+  EXPECT_FALSE(read_hazard_header(path(kHazardFile)).rules.with_rotation);
+  EXPECT_EQ(unpacked()[12], '\x03');
+  tally_.count_rotation();
+  write_hazard(path(kHazardFile), loaded_, tally_, totals_.left_weight);
+  EXPECT_TRUE(read_hazard_header(path(kHazardFile)).rules.with_rotation);
+  EXPECT_EQ(unpacked()[12], '\x04');
+}
+
 TEST_F(HazardFile, TheSameBytesAgain) {
   const std::string first = bytes();
   write_hazard(path(kHazardFile), loaded_, tally_, totals_.left_weight);
@@ -119,7 +129,7 @@ TEST_F(HazardFile, DamagedForeignOrLaterFilesAreRefused) {
   plain[plain.size() - 80] = static_cast<char>(plain[plain.size() - 80] ^ 1);  // packed well, but another number
   refused(packed(plain), "is damaged");
   refused(packed("something else altogether"), "is no file that talus run wrote");
-  refused(packed(std::string("talus-hazard") + std::string("\x04\0\0\0", 4)), "later version of Talus (format 4, this");
+  refused(packed(std::string("talus-hazard") + std::string("\x05\0\0\0", 4)), "later version of Talus (format 5, this");
   refused(packed(std::string("talus-hazard") + std::string("\x01\0\0\0", 4)), "earlier version of Talus (format 1,");
   refused("", "is");
 }

@@ -1195,6 +1195,13 @@ class FromPython(Case):
         for name, title in (("barrier_a_b-0123abcd.gpkg", "Barrier at a/b \\1: MEL by stretch"),
                             ("barrier_mine.csv", "Barrier at mine: design values")):
             self.assertEqual(results.title_of(name, self.folder), title)
+        self.assertIn(", energy with rotation", texts.GERMAN)
+        for value, more in (("false", ""), ("true", ", energy with rotation")):
+            with open(self.path("run.json"), "w", encoding="utf-8") as file:
+                json.dump({"settings": [{"key": "seed", "value": 1}, {"key": "output.count_rotation", "value": value}]}, file)
+            self.assertEqual(results.title_of("return_period_30.tif", self.folder), "Return period of more than 30 kJ" + more)
+            self.assertEqual(results.title_of("hazard_class.tif", self.folder), "Hazard class" + more)
+            self.assertEqual(results.title_of("energy.tif", self.folder), "Energy, P95")
         self.assertLess(results._place(7, results.title_of("return_period_30.tif")),
                         results._place(7, results.title_of("return_period_100.tif")))
 

@@ -220,7 +220,8 @@ void print_blocks(const Scenario& scenario) {
                                                     " features have a diameter of their own");
   line("releases", count_text(scenario.sources.size()) + " x " + count_text(scenario.trajectories) + " = " +
                        count_text(scenario.released()) + " trajectories, seed " + std::to_string(scenario.seed));
-  line("thresholds", "energy " + list_text(scenario.output.energy_thresholds, "kJ") + "; height " +
+  line("thresholds", std::string(scenario.output.count_rotation ? "energy with rotation " : "energy ") +
+                         list_text(scenario.output.energy_thresholds, "kJ") + "; height " +
                          list_text(scenario.output.height_thresholds, "m"));
   line("frequency", frequency_text(scenario));
   if (!scenario.screens.empty()) line("screens", count_text(scenario.screens.size()));

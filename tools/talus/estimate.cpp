@@ -50,7 +50,7 @@ double length_bytes(const Scenario& scenario) {
 
 /// The energy with rotation of a touched cell [byte].
 double total_bytes(const Scenario& scenario) {
-  return scenario.output.energy_total ? sizeof(talus::EnergyTotal) + kHistogram : 0.0;
+  return scenario.output.keeps_total() ? sizeof(talus::EnergyTotal) + kHistogram : 0.0;
 }
 
 /// Number of bands of each raster that is written, the largest first.
@@ -96,7 +96,7 @@ double bytes_of_results(const Scenario& scenario, const RunSize& size) {
 
 double bytes_at_work(const Scenario& scenario, const RunSize& size) {
   const double kept = kKeptCell + 4.0 * thresholds(scenario) + length_bytes(scenario) +
-                      (scenario.output.energy_total ? kKeptTotal : 0.0) +
+                      (scenario.output.keeps_total() ? kKeptTotal : 0.0) +
                       (size.with_hazard ? hazard_bytes(scenario) : 0.0);
   const double tiles = kRasterCell * bands_at_once(scenario) * size.touched_cells;
   return size.touched_cells * kept + std::max(size.touched_cells * kept, tiles) +

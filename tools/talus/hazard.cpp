@@ -273,6 +273,8 @@ int hazard(const HazardOptions& options) {
   for (const std::string& warning : record.warnings) say("warning", warning);
   say_old_report(folder);
   for (const std::string& object : objects) say("", object);
+  if (record.header.rules.with_rotation)
+    say("", "energies count the rotation, as the run says (count_rotation): thresholds, intensities, classes, objects");
   say("", object_text(record) + ": " + count_text(record.cells) + " cells that something passes, " +
               talus::with_digits(record.header.rules.scale.total, 4) + " events per year; results are in " +
               fs::absolute(folder).lexically_normal().string());

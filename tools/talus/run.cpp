@@ -85,6 +85,9 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
   with(command.add_option("--trajectories", flags.trajectories, "per source cell"), scalar_of("trajectories"));
   with(command.add_option("--seed", flags.seed, "of the random numbers")->check(seed_number()), scalar_of("seed"));
   command.add_flag("--energy-total", flags.energy_total, "also energy_total.tif: the energy with rotation");
+  command.add_flag("--count-rotation", flags.count_rotation,
+                   "thresholds, frequencies, classes and objects count the energy with rotation, not the translational "
+                   "one; also energy_total.tif");
   command.add_flag("--bounds", flags.bounds, "also 95 % bounds of the percentiles: energy_bounds.tif and others");
   with(command.add_option("--vectors", flags.vectors,
                           "gpkg or fgb (gpkg): GeoPackage or FlatGeobuf for stops, exits, paths and screens"),

@@ -390,7 +390,11 @@ Markup assumptions_html(const CheckedRun& checked) {
   html +=
       "</li>\n<li>Crossing a cell is meant in plan, at any height: a block that flies over a road has crossed "
       "it.</li>\n"
-      "<li>Energy is translational; P95 is of the largest energy of each path in the cell, over the paths that cross "
+      "<li>Energy is translational";
+  if (checked.run.count_rotation)
+    html += ", but thresholds, return periods, intensities, classes and objects count the energy with rotation";
+  html +=
+      "; P95 is of the largest energy of each path in the cell, over the paths that cross "
       "it.</li>\n<li>Jump height is vertical, from the terrain to the block's lowest point: add its diameter for its "
       "top.</li>\n<li>"
       "Bounds hold for the number of blocks of this model. They know nothing of a wrong DEM, source or "

@@ -47,10 +47,12 @@ bool is_shown_as(const std::string& name, const Shown& shown) {
                                                         : name == begins;
 }
 
-std::string title_of(const std::string& name, const Shown& shown, const std::string& band) {
-  const std::string title = shown.title, rest = rest_of(name, shown);
-  if (name.starts_with("return_period_")) return title + rest + " kJ";
-  if (name.starts_with("intensity_T")) return title + rest + " years";
+/// @param with_rotation  thresholds and hazard count the energy with rotation
+std::string title_of(const std::string& name, const Shown& shown, const std::string& band, bool with_rotation) {
+  const std::string title = shown.title, rest = rest_of(name, shown), counted = with_rotation ? " with rotation" : "";
+  if (name.starts_with("return_period_")) return title + rest + " kJ" + counted;
+  if (name.starts_with("intensity_T")) return title + rest + " years" + (with_rotation ? "," + counted : "");
+  if (name == "hazard_class") return title + (with_rotation ? ", energy" + counted : "");
   const bool quantity = band == "mean" || band == "maximum" || (band.size() == 3 && band.starts_with('P'));
   return quantity ? title + ", " + shortened(band, 20) : title;
 }
@@ -138,7 +140,9 @@ void add_map(const fs::path& folder, const std::string& name, const Shown& shown
   }
   const MapRaster raster(file.string(), style->band);
   check_grid(file, raster, run.grid);
-  ReportMap map{name, title_of(name, shown, raster.band_name()), shortened(raster.unit(), 20), *style, {}, {}};
+  ReportMap map{
+      name, title_of(name, shown, raster.band_name(), run.count_rotation), shortened(raster.unit(), 20), *style, {},
+      {}};
   map.file = name + ".tif";
   map.in_print = shown.in_print;
   map.smallest = name.starts_with("return_period_");

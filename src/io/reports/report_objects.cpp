@@ -40,15 +40,16 @@ void read_curves(const fs::path& file, ObjectsPart& part) {
     part.note = fault + ": the curves are not drawn.";
     return;
   }
-  const auto add_point = [&part](const CsvTable& table, const CsvTable::Row& row) {
+  const std::string energies = part.with_rotation ? "total_energy_kj" : "energy_kj";
+  const auto add_point = [&part, &energies](const CsvTable& table, const CsvTable::Row& row) {
     for (ObjectsPart::Object& object : part.objects) {
       if (object.name != table.text(row, "object")) continue;
-      const auto energy = table.number(row, "energy_kj", kAny), frequency = table.number(row, "frequency", kAny);
+      const auto energy = table.number(row, energies, kAny), frequency = table.number(row, "frequency", kAny);
       if (energy && frequency && *energy > 0.0 && *frequency > 0.0) object.curve.push_back({*energy, *frequency});
     }
   };
-  CsvTable(file.string(), {"object", "energy_kj", "frequency", "lower", "upper", "return_period"},
-           {"object", "energy_kj", "frequency"}, add_point);
+  CsvTable(file.string(), {"object", energies, "frequency", "lower", "upper", "return_period"},
+           {"object", energies, "frequency"}, add_point);
 }
 
 double place_of(double value, double low, double high, double from, double length) {
@@ -109,7 +110,8 @@ Markup curves_drawing(const ObjectsPart& part) {
                          {"stroke-dasharray", dashes}});
     svg.words({{"x", 522}, {"y", y + 4.0}}, shortened(drawn[i]->name, 32));
   }
-  svg.words({{"x", 270}, {"y", 292}, {"text-anchor", "middle"}}, "energy [kJ]");
+  svg.words({{"x", 270}, {"y", 292}, {"text-anchor", "middle"}},
+            part.with_rotation ? "energy with rotation [kJ]" : "energy [kJ]");
   svg.words({{"x", 4}, {"y", 12}}, "exceeded how often [1/year]");
   return svg.drawing({{"width", 720}, {"height", 298}, {"viewBox", "0 0 720 298"}});
 }
@@ -190,8 +192,9 @@ void keep_most_hit(ObjectsPart& part) {
 
 }  // namespace
 
-ObjectsPart read_objects_part(const fs::path& folder) {
+ObjectsPart read_objects_part(const fs::path& folder, bool with_rotation) {
   ObjectsPart part;
+  part.with_rotation = with_rotation;
   const fs::path file = folder / "objects.csv";
   std::error_code none;
   if (!fs::exists(file, none)) return part;
@@ -225,6 +228,7 @@ Markup objects_html(const ObjectsPart& part, bool pieces, const std::vector<std:
       "the more often it is hit, and its class may be higher than that of every cell. To compare parts of a road, cut "
       "it into sections of one length. A block counts for each object that it hits, for both of two sections at their "
       "border: do not add up their frequencies.</p>\n"_html;
+  if (part.with_rotation) html += "<p>Energies and classes of objects count the rotation.</p>\n";
   if (pieces) html += "<p>Blocks broke, and "_html + kHitsOfPieces + ".</p>\n";
   html += "<div class='wide'><table><tr><th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
   for (const std::string& energy : part.thresholds) html += "<th>above "_html + energy + " kJ once in [years]</th>";

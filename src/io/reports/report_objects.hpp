@@ -30,10 +30,12 @@ struct ObjectsPart {
   std::string note;
   std::vector<std::string> not_assessed;  ///< names of objects without figures: the DEM has no height where they lie
   std::size_t not_assessed_left_out = 0;
+  bool with_rotation = false;  ///< of all energies
 };
 
 /// Throws InputError if a table is there and cannot be understood. No objects without tables.
-ObjectsPart read_objects_part(const std::filesystem::path& folder);
+/// @param with_rotation  the run counts the energy with rotation
+ObjectsPart read_objects_part(const std::filesystem::path& folder, bool with_rotation = false);
 /// @param pieces   blocks of the run broke
 /// @param classes  names of the classes, by number
 Markup objects_html(const ObjectsPart& part, bool pieces, const std::vector<std::string>& classes = {});

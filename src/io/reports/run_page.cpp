@@ -51,7 +51,7 @@ RunReport read_report(const fs::path& folder) {
   if (report.run.of_profile) report.profile = read_profile_part(folder);
   if (named.contains("screens_summary.csv")) report.screens = read_screens_part(folder);
   report.barriers = read_barrier_parts(folder, report.hazard);
-  if (named.contains("objects.csv")) report.objects = read_objects_part(folder);
+  if (named.contains("objects.csv")) report.objects = read_objects_part(folder, report.run.count_rotation);
   report.fit = read_fit_part(report.run);
   report.has_frequencies = fs::exists(folder / kHazardFile);
   return report;
@@ -138,14 +138,15 @@ std::string between(const std::vector<double>& limits, std::size_t number, const
 }
 
 /// The matrix of the classes of hazard.
-Markup classes_html(const HazardFacts& hazard) {
+Markup classes_html(const HazardFacts& hazard, bool with_rotation) {
   if (hazard.classes.empty() || hazard.energies.empty() || hazard.years.empty()) return {};
   Markup html =
       "<h3>Classes of hazard</h3>\n<p>For "_html + hazard.object +
       ", by how often it is hit with more than the energy of a row: that with which blocks pass the place. The highest "
       "class of the rows counts. A table of objects takes the largest energy within each outline, which is "
       "higher.</p>\n"
-      "<table><tr><th>energy, return period</th>";
+      "<table><tr><th>";
+  html += with_rotation ? "energy with rotation, return period</th>"_html : "energy, return period</th>"_html;
   for (std::size_t k = 0; k < hazard.classes.front().size(); ++k)
     html += "<th>"_html + between(hazard.years, k, " years") + "</th>";
   html += "</tr>\n";
@@ -168,7 +169,7 @@ Markup maps_html(const RunReport& report, const MapImprint& imprint) {
             "than they are.</p>\n";
   if (!sheet.relief_note.empty()) html += "<p class='act'>"_html + sheet.relief_note + "</p>\n";
   for (const std::string& note : sheet.notes) html += "<p class='note'>"_html + note + "</p>\n";
-  if (report.hazard) html += classes_html(*report.hazard);
+  if (report.hazard) html += classes_html(*report.hazard, report.run.count_rotation);
   if (sheet.maps.empty()) return html + "<p>The folder has no maps.</p>\n";
   return html + map_store(sheet, report.run, imprint) + map_viewer(sheet) + map_figures(sheet, imprint);
 }

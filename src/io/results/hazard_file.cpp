@@ -21,7 +21,7 @@ namespace {
 constexpr unsigned kTerrain = 1, kTouched = 2, kExit = 4;
 
 constexpr const char* kMark = "talus-hazard";
-constexpr int kFormat = 3;
+constexpr int kFormat = 3, kRotationFormat = 4;  // 4: energies with rotation, which earlier versions must not read
 constexpr std::size_t kMostThresholds = 32;
 constexpr double kMostPerByte = 1040.0;  // bytes that one byte of a gzip file can hold
 
@@ -119,15 +119,18 @@ HazardCell get_cell(HazardReader& in, const HazardRules& rules) {
 }
 
 /// Reads the mark and the format. Throws InputError for others.
-void check_format(HazardReader& in) {
+/// @return whether energies count the rotation
+bool get_format(HazardReader& in) {
   std::string mark(std::strlen(kMark), ' ');
   in.get(mark.data(), mark.size());
   if (mark != kMark) throw InputError(in.name() + ": is no file that talus run wrote; give the folder of a run");
   const auto format = in.get<std::int32_t>();
-  if (format != kFormat)
+  if (format != kFormat && format != kRotationFormat)
     throw InputError(in.name() + ": was written by " + (format > kFormat ? "a later" : "an earlier") +
                      " version of Talus (format " + std::to_string(format) + ", this one reads " +
-                     std::to_string(kFormat) + "); use that version, or run again");
+                     std::to_string(kFormat) + " and " + std::to_string(kRotationFormat) +
+                     "); use that version, or run again");
+  return format == kRotationFormat;
 }
 
 /// Reads the length of the header, and the header.
@@ -149,7 +152,7 @@ void write_hazard(const std::filesystem::path& file, const LoadedScenario& loade
   const Grid& grid = heights.grid;
   HazardWriter out(file);
   out.put(kMark, std::strlen(kMark));
-  out.put(std::int32_t{kFormat});
+  out.put(std::int32_t{tally.hazard_rules().with_rotation ? kRotationFormat : kFormat});
   const std::string header = json_of(loaded, tally.hazard_rules(), left_weight).dump();
   out.put(static_cast<std::uint32_t>(header.size()));
   out.put(header.data(), header.size());
@@ -170,8 +173,9 @@ void write_hazard(const std::filesystem::path& file, const LoadedScenario& loade
 HazardHeader read_hazard(const std::filesystem::path& file, const std::function<void(const HazardHeader&)>& begin,
                          const std::function<void(const HazardRow&)>& visit) {
   HazardReader in(file);
-  check_format(in);
-  const HazardHeader header = get_header(in);
+  const bool with_rotation = get_format(in);
+  HazardHeader header = get_header(in);
+  header.rules.with_rotation = with_rotation;
   const double least =
       static_cast<double>(header.grid.columns) * header.grid.rows;  // bytes: each cell has one byte at least
   if (least > kMostPerByte * static_cast<double>(std::filesystem::file_size(file))) in.fail();

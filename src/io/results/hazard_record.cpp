@@ -87,6 +87,7 @@ std::string hazard_json(const HazardRecord& record) {
   json["confidence"] = kConfidence;
   json["energy_relative_error"] = EnergyBins::kRelativeWidth;
   json["energy_thresholds_kj"] = record.header.rules.bins.thresholds();
+  json["count_rotation"] = record.header.rules.with_rotation;
   json["matrix"] = json_of(record.matrix);
   json["matrix_file"] = record.matrix_file.empty() ? Json("default") : Json(record.matrix_file);
   if (record.width > 0.0)

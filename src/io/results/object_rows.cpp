@@ -41,6 +41,7 @@ std::string head_of_table(const ObjectRow& object, const std::vector<int>& attri
   std::string text = "object";
   for (const int i : attributes) text += ',' + csv_field(std::string(object.from.GetFieldDefnRef(i)->GetNameRef()));
   for (const auto& [name, value] : object.figures) text += ',' + name;
+  if (object.with_rotation) text += std::string(",") + kEnergiesColumn;
   return text + ",sources\n";
 }
 
@@ -82,8 +83,9 @@ Figures figures_of(const HazardRules& rules, const ObjectHits& hits, double with
   return figures;
 }
 
-std::vector<int> copied_attributes(OGRFeature& model, const Figures& figures) {
+std::vector<int> copied_attributes(OGRFeature& model, const Figures& figures, bool with_rotation) {
   std::vector<std::string> own{"object", "sources", "fid", "geom"};
+  if (with_rotation) own.emplace_back(kEnergiesColumn);
   for (const auto& [name, value] : figures) own.push_back(name);
   std::vector<int> copied;
   for (int i = 0; i < model.GetFieldCount(); ++i) {
@@ -96,11 +98,12 @@ std::vector<int> copied_attributes(OGRFeature& model, const Figures& figures) {
 
 ObjectsWriter::ObjectsWriter(const std::filesystem::path& file, const LoadedScenario& loaded, OGRFeature& model,
                              const Figures& figures)
-    : file_(file, loaded.geo), attributes_(copied_attributes(model, figures)) {
+    : file_(file, loaded.geo), attributes_(copied_attributes(model, figures, loaded.scenario.output.count_rotation)) {
   std::vector<GeoPackage::Column> columns{{"object", OFTString}};
   for (const int i : attributes_)
     columns.push_back({model.GetFieldDefnRef(i)->GetNameRef(), column_type(model.GetFieldDefnRef(i)->GetType())});
   for (const auto& [name, value] : figures) columns.push_back({name.c_str(), OFTReal});
+  if (loaded.scenario.output.count_rotation) columns.push_back({kEnergiesColumn, OFTString});
   columns.push_back({"sources", OFTString});
   layer_ = file_.add_layer("objects", wkbUnknown, columns);
 }
@@ -118,6 +121,7 @@ void ObjectsWriter::write(const ObjectRow& object, const OGRGeometry& geometry) 
     if (std::isfinite(value)) row->SetField(next, value);
     ++next;
   }
+  if (object.with_rotation) row->SetField(next++, kEnergiesWithRotation);
   row->SetField(next, object.sources.c_str());
   row->SetGeometry(&geometry);
   file_.append(layer_, *row);
@@ -129,11 +133,12 @@ void ObjectsWriter::finish(StyledLayer style) {
 }
 
 void ObjectsTable::add(const ObjectRow& object) {
-  const std::vector<int> attributes = copied_attributes(object.from, object.figures);
+  const std::vector<int> attributes = copied_attributes(object.from, object.figures, object.with_rotation);
   if (text_.empty()) text_ = head_of_table(object, attributes);
   text_ += csv_field(object.name);
   for (const int i : attributes) text_ += ',' + csv_field(attribute_text(object.from, i));
   for (const auto& [name, value] : object.figures) text_ += ',' + csv_field(value);
+  if (object.with_rotation) text_ += std::string(",") + kEnergiesWithRotation;
   text_ += ',' + csv_field(object.sources) + '\n';
 }
 

@@ -19,8 +19,11 @@ using Figures = std::vector<std::pair<std::string, double>>;
 ///                        although blocks may touch its rim; if it is some of it, the upper bounds are not known
 Figures figures_of(const HazardRules& rules, const ObjectHits& hits, double without_height, const HazardMatrix& matrix);
 
+/// Name and text of the column that objects have if their energies count the rotation.
+inline constexpr const char *kEnergiesColumn = "energies", *kEnergiesWithRotation = "with rotation";
+
 /// Attributes of the input that are copied: those that are not named as a column of the results.
-std::vector<int> copied_attributes(OGRFeature& model, const Figures& figures);
+std::vector<int> copied_attributes(OGRFeature& model, const Figures& figures, bool with_rotation);
 
 /// Row of an object, in the layer and in the table.
 struct ObjectRow {
@@ -28,9 +31,10 @@ struct ObjectRow {
   OGRFeature& from;  // of the input
   const Figures& figures;
   const std::string& sources;
+  bool with_rotation;  // its energies
 };
 
-/// The layer `objects`: name of the object, attributes of the input, figures, sources.
+/// The layer `objects`: name of the object, attributes of the input, figures, energies if with rotation, sources.
 class ObjectsWriter {
  public:
   /// @param model  a feature of the input

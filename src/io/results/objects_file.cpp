@@ -310,7 +310,7 @@ std::string never_hit_text(const ObjectHits& hits) {
 
 std::string ObjectLayer::not_copied_text(const HazardRules& rules, const HazardMatrix& matrix) const {
   OGRFeature& model = *state_->features.front();
-  const std::vector<int> copied = copied_attributes(model, figures_of(rules, {}, 0.0, matrix));
+  const std::vector<int> copied = copied_attributes(model, figures_of(rules, {}, 0.0, matrix), rules.with_rotation);
   std::vector<std::string> left_out;
   for (int i = 0; i < model.GetFieldCount(); ++i) {
     const std::string name = model.GetFieldDefnRef(i)->GetNameRef();
@@ -364,7 +364,8 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
   std::unique_ptr<ObjectsWriter> writer;
   ObjectsTable table;
   const std::vector<std::string> names = distinct_names(loaded.scenario.features);
-  std::string curves = "object,energy_kj,frequency,lower,upper,return_period\n",
+  std::string curves = std::string("object,") + (rules.with_rotation ? "total_energy_kj" : "energy_kj") +
+                       ",frequency,lower,upper,return_period\n",
               from = "object,feature,frequency,share\n";
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const HazardCurve curve(rules, hits[i].largest);
@@ -381,7 +382,7 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
     }
     if (!writer)
       writer = std::make_unique<ObjectsWriter>(folder / "objects.gpkg", loaded, *state_->features[i], figures);
-    const ObjectRow row{state_->names[i], *state_->features[i], figures, sources};
+    const ObjectRow row{state_->names[i], *state_->features[i], figures, sources, rules.with_rotation};
     writer->write(row, *geometry_of(state_->parts[i], grid.west, grid.south));
     table.add(row);
     if (state_->known(i)) curves += curve_rows(object, curve, rules.bins, !state_->is_partial(i));

@@ -10,6 +10,7 @@
 #include "io/gdal/dataset.hpp"
 #include "io/gdal/geopackage.hpp"
 #include "io/gdal/regular_file.hpp"
+#include "recorded_run.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
@@ -158,12 +159,13 @@ std::vector<std::pair<std::string, std::string>> titles_of(const std::vector<std
 }
 
 /// The layers that are there, from the top to the bottom.
-std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs::path& folder) {
+std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs::path& folder, bool count_rotation) {
   std::vector<Shown> shown;
   for (const ProjectLayer& layer : project_layers())
     for (const auto& [title, name] : titles_of(files, folder, layer)) {
       const std::string stem = fs::path(name).stem().string();
-      Shown one{id_of(stem, kind_of(layer.file)), title, "./" + name, kind_of(layer.file), layer.shown};
+      Shown one{id_of(stem, kind_of(layer.file)), layer.counts_energy && count_rotation ? title + kWithRotation : title,
+                "./" + name, kind_of(layer.file), layer.shown};
       if (name.ends_with(".gpkg")) {
         one.source += "|layername=" + stem;
         one.style = parsed_xml(style_in(folder / name, stem));
@@ -346,6 +348,7 @@ ProjectGround ground_of(const Json& run) {
   ground.rows = static_cast<int>(whole_number(grid.at("rows"), 1, 1 << 30));
   for (const Json& input : run.at("inputs")) ground.inputs.push_back({input.at("role"), input.at("path"), ""});
   ground.dem = dem_of(ground.inputs);
+  ground.count_rotation = counts_rotation(run);
   return ground;
 }
 
@@ -357,18 +360,18 @@ const std::vector<ProjectLayer>& project_layers() {
       {"barrier_<id>.csv", "Barrier at <id>: design values"},
       {"objects.gpkg", "Objects: return period of a hit", true},
       {"objects_sources.csv", "Objects: sources of the hits"},
-      {"objects_curves.csv", "Objects: hazard curves"},
+      {"objects_curves.csv", "Objects: hazard curves", false, true},
       {"screens.gpkg", "Screens: energy, P95", true},
       {"screens_summary.csv", "Screens: all quantities"},
       {"exits.gpkg", "Ends off the map: energy"},
       {"stops.gpkg", "Stops: largest energy of the path"},
       {"trajectories.gpkg", "Paths: largest speed"},
       {"barriers.csv", "Barriers of the run: counts by stretch"},
-      {"hazard_class.tif", "Hazard class", true},
+      {"hazard_class.tif", "Hazard class", true, true},
       {"annual_frequency.tif", "Blocks per year"},
-      {"return_period_<n>.tif", "Return period of more than <n> kJ"},
-      {"intensity_T<n>.tif", "Energy once in <n> years"},
-      {"hazard_curves.tif", "Hazard curves: annual frequency"},
+      {"return_period_<n>.tif", "Return period of more than <n> kJ", false, true},
+      {"intensity_T<n>.tif", "Energy once in <n> years", false, true},
+      {"hazard_curves.tif", "Hazard curves: annual frequency", false, true},
       {"impact_probability.tif", "Impact probability", true},
       {"reach_probability.tif", "Reach probability"},
       {"passage_density.tif", "Passage density"},
@@ -376,7 +379,7 @@ const std::vector<ProjectLayer>& project_layers() {
       {"energy_total.tif", "Energy with rotation, P95"},
       {"jump_height.tif", "Jump height, P95"},
       {"velocity.tif", "Speed, P95"},
-      {"energy_exceedance.tif", "Share above the first energy threshold"},
+      {"energy_exceedance.tif", "Share above the first energy threshold", false, true},
       {"height_exceedance.tif", "Share above the first height threshold"},
       {"energy_bounds.tif", "Energy, upper bound of P95"},
       {"jump_height_bounds.tif", "Jump height, upper bound of P95"},
@@ -394,12 +397,13 @@ const std::vector<ProjectLayer>& project_layers() {
 
 ProjectGround ground_of(const LoadedScenario& loaded) {
   const Grid& grid = loaded.scenario.surface.grid();
-  return {loaded.geo, grid.columns, grid.rows, dem_of(loaded.inputs), loaded.inputs};
+  return {
+      loaded.geo, grid.columns, grid.rows, dem_of(loaded.inputs), loaded.inputs, loaded.scenario.output.count_rotation};
 }
 
 std::string project_of(const std::vector<std::string>& files, const fs::path& folder, const fs::path& shown_as,
                        const ProjectGround& ground) {
-  std::vector<Shown> shown = shown_layers(files, folder);
+  std::vector<Shown> shown = shown_layers(files, folder, ground.count_rotation);
   check_one_map(shown);
   add_inputs(shown, ground, shown_as);
   if (auto hillshade = hillshade_of(ground.dem, shown_as)) shown.push_back(std::move(*hillshade));

@@ -17,4 +17,10 @@ std::string plan_of_tally(const Json& run) {
   return run.contains("rounds") ? run.at("rounds").value("plan", plan) : plan;
 }
 
+bool counts_rotation(const Json& run) {
+  for (const Json& setting : run.value("settings", Json::array()))
+    if (setting.at("key") == "output.count_rotation") return setting.at("value") == "true";
+  return false;
+}
+
 }  // namespace talus::io

@@ -100,6 +100,13 @@ std::optional<std::string> wet_note(const Json& run, bool per_year) {
                    : "");
 }
 
+/// That a barrier is designed by another energy than the classes; nothing if all are translational.
+std::optional<std::string> rotation_note(const Json& run, bool of_line) {
+  if (!of_line || !counts_rotation(run)) return std::nullopt;
+  return "energies here are translational, as those by which nets are tested, although the thresholds and classes of "
+         "this run count the rotation (count_rotation)";
+}
+
 /// That the figures hold only while the forest of the run stands; nothing if none acted there.
 std::optional<std::string> stand_note(const Json& run) {
   const std::string text = forest_text(acting_in(run));
@@ -125,7 +132,8 @@ std::vector<std::string> notes_of_run(const std::filesystem::path& folder, const
     std::vector<std::string> notes = warnings_for(run, use.frequency);
     for (const std::optional<std::string>& note :
          {status_note(run), later_version_note(run.value("version", "")), recorded_coefficient_note(run),
-          standing_note(run, use.of_line), wet_note(run, use.per_year), stand_note(run)})
+          standing_note(run, use.of_line), wet_note(run, use.per_year), stand_note(run),
+          rotation_note(run, use.of_line)})
       if (note) notes.push_back(*note);
     return notes;
   });

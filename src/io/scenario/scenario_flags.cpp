@@ -171,6 +171,10 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
     spec.values.output.energy_total = true;
     spec.origins["output.energy_total"] = "flag --energy-total";
   }
+  if (flags.count_rotation) {
+    spec.values.output.count_rotation = true;
+    spec.origins["output.count_rotation"] = "flag --count-rotation";
+  }
   if (flags.bounds) {
     spec.values.output.bounds = true;
     spec.origins["output.bounds"] = "flag --bounds";

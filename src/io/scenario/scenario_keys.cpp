@@ -301,6 +301,7 @@ class SpecReader {
       given("output.passages_below");
     }
     truth(table, "energy_total", spec_.values.output.energy_total);
+    truth(table, "count_rotation", spec_.values.output.count_rotation);
     truth(table, "bounds", spec_.values.output.bounds);
     if (const auto name = table.text("vectors")) {
       const auto format = vector_format(*name);

@@ -89,6 +89,8 @@ class Lines {
       add("output", "height_thresholds", list_text(spec.values.output.height_thresholds), "m");
       add("output", "passages_below", text_of(spec.values.output.passages_below), "m");
       add("output", "energy_total", spec.values.output.energy_total ? "true" : "false", "");
+      add("output", "count_rotation", spec.values.output.count_rotation ? "true" : "false", "");
+      lines_.back().written = spec.values.output.count_rotation;  // the plans of earlier versions keep their checksum
       add("output", "bounds", spec.values.output.bounds ? "true" : "false", "");
       add_text("output", "vectors", std::string(name_of(spec.values.output.vectors)));
     }

@@ -88,11 +88,12 @@ double EnergyTotal::mean() const {
   return count == 0 ? 0.0 : static_cast<double>(sum) * kTotalUnit / static_cast<double>(count);
 }
 
-void EnergyTotal::add(std::span<const float> values) {
+float EnergyTotal::add(std::span<const float> values) {
   const Sums sums = sums_of(values, 1.0 / kTotalUnit);
   add_checked(sum, sums.sum);
   maximum = std::max(maximum, sums.largest);
   histogram.add(values);
+  return sums.largest;
 }
 
 void EnergyTotal::merge(const EnergyTotal& other) {

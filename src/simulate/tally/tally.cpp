@@ -140,7 +140,12 @@ Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vecto
 
 void Tally::keep_hazard(AnnualWeights weights) {
   hazard_ = std::make_unique<Hazard>(
-      Hazard{{EnergyBins(thresholds_[Quantity::Energy]), weights.scale()}, std::move(weights)});
+      Hazard{{EnergyBins(thresholds_[Quantity::Energy]), weights.scale(), count_rotation_}, std::move(weights)});
+}
+
+void Tally::count_rotation() {
+  keep_total_ = count_rotation_ = true;
+  if (hazard_) hazard_->rules.with_rotation = true;
 }
 
 void Tally::set_rounds(std::uint32_t rounds) {
@@ -178,6 +183,7 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
   TALUS_EXPECT(index < layout_.count(), "a visit lies in a region of the tally");
   Region& region = regions_[index];
   TALUS_EXPECT(batch.levels() <= 1 + energy_thresholds(), "a batch has no other thresholds than the tally");
+  TALUS_EXPECT(batch.counts_rotation() == count_rotation_, "a batch counts the same energy as the tally");
   TALUS_EXPECT(visits.totals.size() == (keep_total_ ? visits.visits.size() : 0), "each visit has its total energy");
   prefetch(visits.lengths.data(), visits.lengths.size() * sizeof(float));
   work.sort(visits);
@@ -209,17 +215,18 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
     }
     CellRecord& record = region.records[groups[i].record];
     gather(groups[i].visits, batch, values, record, reach);
+    PerQuantity<float> largest = record.add(values);
     if (keep_total_) {
       const auto first = static_cast<std::size_t>(groups[i].visits.data() - all.data());
       gather_totals(groups[i].visits, std::span(work.totals).subspan(first), batch, values.totals);
-      region.totals[groups[i].record].add({values.totals.data(), values.count});
+      const float total = region.totals[groups[i].record].add({values.totals.data(), values.count});
+      if (count_rotation_) largest[Quantity::Energy] = total;
     }
-    const PerQuantity<float> largest = record.add(values);
     count_exceedances(region.exceedances.data() + groups[i].record * threshold_count_, values, largest);
     add_lengths(groups[i], visits.lengths, batch, region);
     if (hazard_) {
       HazardCell& hazard = region.hazards[groups[i].record];
-      hazard.add(hazard_->rules, values.of(Quantity::Energy), values.annual_shares);
+      hazard.add(hazard_->rules, counted(Quantity::Energy, values), values.annual_shares);
       add_weighted_lengths(groups[i], visits.lengths, batch, hazard);
     }
     scored += values.count;
@@ -268,11 +275,19 @@ void Tally::add_weighted_lengths(const Group& group, std::span<const float> mixe
   }
 }
 
+/// The values of which exceedances and hazard count: of the energies those with rotation, if these are counted.
+std::span<const float> Tally::counted(Quantity quantity, const CellValues& values) const {
+  if (count_rotation_ && quantity == Quantity::Energy) return {values.totals.data(), values.count};
+  return values.of(quantity);
+}
+
+/// @param largest  of the counted values of each quantity
 void Tally::count_exceedances(std::uint32_t* over, const CellValues& values, const PerQuantity<float>& largest) const {
   for (std::size_t q = 0; q < kQuantities; ++q) {
     const std::vector<float>& limits = limits_[q];
+    const std::span<const float> all = counted(static_cast<Quantity>(q), values);
     for (std::size_t i = 0; i < limits.size() && largest[q] > limits[i]; ++i)  // ascending: the rest is not exceeded
-      over[i] += exceeding({values.lists[q].data(), values.count}, limits[i]);
+      over[i] += exceeding(all, limits[i]);
     over += limits.size();
   }
 }

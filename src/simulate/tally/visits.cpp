@@ -18,6 +18,7 @@ constexpr std::uint32_t kMostImpacts = (1U << 22U) - 1;  // of a visit: what its
 LengthRules length_rules(const OutputSettings& output) {
   LengthRules rules{output.energy_thresholds};
   if (output.passages_below > 0.0) rules.below = output.passages_below;
+  rules.with_rotation = output.count_rotation;
   return rules;
 }
 
@@ -38,7 +39,8 @@ VisitBatch::VisitBatch(const Grid& grid, LengthRules lengths)
       lengths_(std::move(lengths)),
       limits_(lengths_.energies.size()),
       here_(lengths_.levels()),
-      layout_(grid) {}
+      layout_(grid),
+      keep_total_(lengths_.with_rotation) {}
 
 void VisitBatch::clear() {
   for (auto region = regions_.begin(); region != regions_.end();) {
@@ -61,11 +63,18 @@ void VisitBatch::begin(Trajectory trajectory) {
   trajectories_.push_back(std::move(trajectory));
   trajectories_.back().annual_share = annual_share_;
   pieces_ = pieces_ || trajectories_.back().piece;
-  for (std::size_t i = 0; i < limits_.size(); ++i)
-    limits_[i] = static_cast<float>(2e3 * lengths_.energies[i] / trajectories_.back().size.mass);
+  set_limits(0.0);
   column_ = row_ = -1;
   region_ = nullptr;
   region_index_ = static_cast<std::size_t>(-1);
+}
+
+/// Sets the squares of the speed at which the energy of the current trajectory is at each threshold.
+/// @param rotation  twice the energy of its rotation per mass, if that counts [m^2/s^2]; limits below 0 are exceeded
+void VisitBatch::set_limits(double rotation) {
+  const double mass = trajectories_.back().size.mass;
+  for (std::size_t i = 0; i < limits_.size(); ++i)
+    limits_[i] = static_cast<float>(2e3 * lengths_.energies[i] / mass - rotation);
 }
 
 void VisitBatch::add(const Path& path, BlockSize size, std::uint32_t source, std::shared_ptr<SourceReach> reach,
@@ -106,6 +115,7 @@ void VisitBatch::add(const Path& path, std::size_t from, std::size_t to) {
     rotation_ = spin == path.spins.begin()
                     ? 0.0F
                     : static_cast<float>(2e3 / body.mass * body.rotational_energy_kj(std::prev(spin)->spin));
+    if (lengths_.with_rotation) set_limits(rotation_);
     const std::size_t until = spin == path.spins.end() ? to : std::min(to, spin->span);
     add(spans.subspan(from, until - from));
     from = until;

@@ -46,5 +46,22 @@ TEST(HazardTable, CurvesHaveABandPerEnergy) {
                                    "annual frequency of E > 64 kJ of an object 10 m wide (in plan, at any height)"));
 }
 
+/// Where energies count the rotation, every map with energies says so.
+TEST(HazardTable, MapsSayWhichEnergyCounts) {
+  const HazardRules with{EnergyBins({30.0}), {}, true}, without{EnergyBins({30.0}), {}};
+  for (const ObjectWidth& object : {ObjectWidth{}, ObjectWidth{10.0, 0.0}}) {
+    for (const HazardMap& map : hazard_maps_of(with, {}, object, true)) {
+      const bool of_energy = map.map.name != "annual_frequency";
+      EXPECT_EQ(map.map.title.find("with rotation") != std::string::npos, of_energy) << map.map.title;
+      EXPECT_EQ(map.map.title.find("ranslational"), std::string::npos) << map.map.title;
+      for (const Map::Band& band : map.map.bands) EXPECT_EQ(band.name.find("E >"), std::string::npos) << band.name;
+    }
+    for (const HazardMap& map : hazard_maps_of(without, {}, object, true)) {
+      EXPECT_EQ(map.map.title.find("rotation"), std::string::npos) << map.map.title;
+      for (const Map::Band& band : map.map.bands) EXPECT_EQ(band.name.find("rotation"), std::string::npos) << band.name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace talus

@@ -58,6 +58,21 @@ TEST(ObjectFinder, TakesTheEnergyAtTheObject) {
   EXPECT_LT(contact_with(wall(16.0, 17.0), flight()).largest, 0.0F) << "0.5 m beyond its edge";
 }
 
+/// 2 kg, 1 m: the rotation adds 0.1 w^2 / 1000 kJ, from the span on from which the block spins.
+TEST(ObjectFinder, TakesTheRotationToo) {
+  Path path = test::path_of({flight(), flight()}, End::Stopped);
+  path.spins = {{0, 10.0}, {0, 20.0}, {1, 30.0}};  // two impacts at one place: the last counts
+  const Surface surface = plain();
+  const std::vector<HazardObject> objects{wall(8.0, 9.0)};
+  std::vector<ObjectContact> with(1), without(1);
+  ObjectFinder(surface, wall_at_15(), objects, 0.5, true).add(path, block(), with);
+  ObjectFinder(surface, wall_at_15(), objects, 0.5).add(path, block(), without);
+  EXPECT_NEAR(with[0].entry, 0.10625 + 0.040, 1e-7);
+  EXPECT_NEAR(with[0].largest, 0.10625 + 0.090, 1e-7) << "it passes again, and spins faster";
+  EXPECT_NEAR(without[0].entry, 0.10625, 1e-7);
+  EXPECT_NEAR(without[0].largest, 0.10625, 1e-7);
+}
+
 TEST(ObjectFinder, InASlideTheSquareOfTheSpeedIsLinear) {  // from 10 to 20 m/s in 10 m
   const Span slide{{0, 0}, 0.0F, 0.5F, 1.0F, 0.5F, 0.0F, 0.0F, 0.0F, 0.0F, 10.0F, 20.0F, 0};
   const ObjectContact contact = contact_with(wall(8.0, 9.0), slide);

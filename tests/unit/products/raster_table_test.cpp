@@ -188,5 +188,24 @@ TEST(Quantities, OfACubicMetreOfRockAtTenMetresPerSecond) {  // 2700 kg: 135 kJ
   EXPECT_EQ(kQuantityTable[index_of(Quantity::Height)].value(maxima, 2700.0), 1.5F);
 }
 
+/// Of the rasters of a run those with thresholds of the energy say that it is with rotation, where it is.
+TEST(RasterTable, SaysWhichEnergyCounts) {
+  RunCounts run = kRun;
+  for (const bool with : {false, true}) {
+    run.with_rotation = with;
+    for (const RunRaster& raster : run_rasters()) {
+      const bool counted = with && raster.thresholds_of == Quantity::Energy;
+      if (raster.map.name == "energy_exceedance")
+        EXPECT_EQ(title_of(raster, run).find("with rotation") != std::string::npos, with);
+      else
+        EXPECT_EQ(title_of(raster, run), raster.map.title);
+      for (const Map::Band& band : bands_of(raster, run))
+        EXPECT_EQ(band.name.find("E with rotation >") != std::string::npos,
+                  counted && band.name.find(" > ") != std::string::npos)
+            << band.name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace talus

@@ -42,7 +42,7 @@ SCENARIO_INPUTS = {
     "fields": {"sources": SOURCE_FIELDS},
     "field of": {"zone-field": "zones"},
     "raster too": {"zones"},
-    "advanced": {"scenario", "surface", "thresholds", "seed", "energy-total", "bounds", "vectors", "rounds", "until-error",
+    "advanced": {"scenario", "surface", "thresholds", "seed", "energy-total", "count-rotation", "bounds", "vectors", "rounds", "until-error",
                  "deformation-coefficient", "above", "most-rounds", "pits"},
     "labels": {"parameters": "ground-parameters"},
     "needs": [("scenario",), ("dem", "sources")],

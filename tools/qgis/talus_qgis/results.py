@@ -56,7 +56,18 @@ def title_of(name, folder=None):
         title = tr("title " + name)
         return name.replace("_", " ") if title.startswith("title ") else title
     word = _id_of_design(folder, name) or found[2] if folder and name.startswith("barrier_") else found[2]
-    return re.sub("<n>|<id>", lambda _: word, tr(found[1]["title"]))
+    title = re.sub("<n>|<id>", lambda _: word, tr(found[1]["title"]))
+    return title + tr(", energy with rotation") if folder and found[1].get("counts_energy") and _counts_rotation(folder) else title
+
+
+def _counts_rotation(folder):
+    """Whether the run counts the energy with rotation in thresholds and classes, as its record says."""
+    try:
+        with open(os.path.join(folder, "run.json"), encoding="utf-8") as file:
+            settings = json.load(file)["settings"]
+        return any(s["key"] == "output.count_rotation" and s["value"] == "true" for s in settings)
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
 
 
 def _id_of_design(folder, name):

@@ -29,6 +29,7 @@ LABELS = {
     "surface": ("Surface between cell centres", "Oberfläche zwischen den Zellmitten"),
     "seed": ("Seed of the random numbers", "Startwert der Zufallszahlen"),
     "energy-total": ("Energy with rotation, too", "Auch die Energie mit Rotation"),
+    "count-rotation": ("Count the rotation in thresholds and classes", "Die Rotation bei Schwellen und Gefahrenstufen mitzählen"),
     "bounds": ("95 % bounds of the percentiles, too", "Auch 95-%-Schranken der Perzentile"),
     "vectors": ("Format of the layers", "Format der Layer"),
     "out": ("Results", "Ergebnisse"),
@@ -281,6 +282,7 @@ GERMAN = {
     "Passage density": "Durchgangsdichte",
     "Energy, P95": "Energie, P95",
     "Energy with rotation, P95": "Energie mit Rotation, P95",
+    ", energy with rotation": ", Energie mit Rotation",
     "Jump height, P95": "Sprunghöhe, P95",
     "Speed, P95": "Geschwindigkeit, P95",
     "Share above the first energy threshold": "Anteil über der ersten Energieschwelle",
@@ -328,6 +330,10 @@ GERMAN = {
     "per source cell": "pro Ausbruchzelle",
     "of the random numbers": "der Zufallszahlen; gleicher Startwert, gleiche Ergebnisse",
     "also energy_total.tif: the energy with rotation": "auch energy_total.tif: die Energie mit Rotation",
+    "thresholds, frequencies, classes and objects count the energy with rotation, not the translational one; also "
+    "energy_total.tif":
+        "Schwellen, Häufigkeiten, Gefahrenstufen und Objekte zählen die Energie mit Rotation statt der translatorischen; "
+        "dazu energy_total.tif",
     "also 95 % bounds of the percentiles: energy_bounds.tif and others":
         "auch 95-%-Schranken der Perzentile: energy_bounds.tif und andere",
     "gpkg or fgb (gpkg): GeoPackage or FlatGeobuf for stops, exits, paths and screens":

@@ -16,6 +16,7 @@ struct ProjectGround {
   int columns, rows;
   std::filesystem::path dem;        ///< absolute; of a DEM that is no plain file, or not there, no hillshade is drawn
   std::vector<InputFile> inputs{};  ///< of the run; the sources and barriers among them are drawn, where they can be
+  bool count_rotation = false;      ///< the run counts the energy with rotation
 };
 ProjectGround ground_of(const LoadedScenario& loaded);
 
@@ -35,10 +36,13 @@ bool refresh_project(const std::filesystem::path& folder);
 
 /// A result in the group. "<n>" is a number and "<id>" an id, the same in both texts.
 struct ProjectLayer {
-  std::string file;    ///< "return_period_<n>.tif"; ".gpkg" is also ".fgb"; ".csv" is a table
-  std::string title;   ///< "Return period of more than <n> kJ"
-  bool shown = false;  ///< at first; of the maps only one: the hazard class, if there is one
+  std::string file;            ///< "return_period_<n>.tif"; ".gpkg" is also ".fgb"; ".csv" is a table
+  std::string title;           ///< "Return period of more than <n> kJ"
+  bool shown = false;          ///< at first; of the maps only one: the hazard class, if there is one
+  bool counts_energy = false;  ///< its title says so where the run counts the energy with rotation
 };
+/// What the title then ends with.
+inline constexpr const char* kWithRotation = ", energy with rotation";
 /// From the top of the group downwards.
 const std::vector<ProjectLayer>& project_layers();
 

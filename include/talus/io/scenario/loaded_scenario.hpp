@@ -39,7 +39,7 @@ struct RunFlags {
   std::optional<std::uint32_t> trajectories;
   std::optional<std::uint64_t> seed;
   std::vector<std::string> fields;  ///< "diameter=Durchmesser": names of fields of the sources
-  bool energy_total = false, bounds = false;
+  bool energy_total = false, count_rotation = false, bounds = false;
   /// Results whose scenario this is: its files may have been moved or copied together with them. The caller compares
   /// what the files hold.
   struct Recorded {

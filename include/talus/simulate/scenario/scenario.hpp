@@ -74,13 +74,17 @@ struct FrequencyRules {
 
 /// Settings of the results.
 struct OutputSettings {
-  std::vector<double> energy_thresholds{30.0, 300.0};    ///< translational [kJ], ascending
+  std::vector<double> energy_thresholds{30.0, 300.0};    ///< [kJ], ascending
   std::vector<double> height_thresholds{1.0, 2.0, 4.0};  ///< vertical, above the terrain [m], ascending
   std::uint32_t paths = 500;                             ///< trajectories written as vectors
   double passages_below = 0.0;  ///< only passages lower than this count in passage densities [m]; 0: at any height
   bool energy_total = false;    ///< the energy with rotation is kept per cell
+  bool count_rotation = false;  ///< thresholds and hazard count the energy with rotation, not the translational one
   bool bounds = false;          ///< bounds of percentiles are written
   VectorFormat vectors = VectorFormat::GeoPackage;  ///< of stops, exits, paths and screens
+
+  /// Whether the energy with rotation is kept per cell.
+  bool keeps_total() const { return energy_total || count_rotation; }
 };
 
 /// All settings and data of a run: built by `make_scenario`, then constant. Everything is on one grid, in local metres.

@@ -30,7 +30,8 @@ struct EnergyTotal {
   EnergyTotal() = default;
   explicit EnergyTotal(MemoryPolicy memory) : histogram(memory) {}
   double mean() const;
-  void add(std::span<const float> values);
+  /// Adds trajectories. Returns the largest value among them.
+  float add(std::span<const float> values);
   void merge(const EnergyTotal& other);
   void save(ByteWriter& out) const;
   static EnergyTotal restored(ByteReader& in);

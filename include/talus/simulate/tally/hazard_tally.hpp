@@ -14,6 +14,7 @@ namespace talus {
 struct HazardRules {
   EnergyBins bins;
   WeightScale scale;
+  bool with_rotation = false;  ///< energies count the rotation; else they are translational
 
   std::size_t levels() const { return 1 + bins.thresholds().size(); }  ///< passage, then each threshold
 };

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "talus/simulate/plan/region.hpp"
@@ -29,6 +30,9 @@ class Tally {
   /// Keeps the energy with rotation per cell, too; call it before the first batch. Batches must then keep it.
   void keep_energy_total() { keep_total_ = true; }
   bool keeps_energy_total() const { return keep_total_; }
+  /// Counts exceedances, hazard and lengths by the energy with rotation, which is kept, too; call it before the first
+  /// batch. Batches must then count it.
+  void count_rotation();
   /// The energy with rotation of a cell with a record; nullptr without `keep_energy_total`.
   const EnergyTotal* energy_total(int column, int row) const;
 
@@ -102,6 +106,7 @@ class Tally {
   void add_weighted_lengths(const Group& group, std::span<const float> mixed, const VisitBatch& batch,
                             HazardCell& hazard) const;
   std::size_t energy_thresholds() const { return thresholds_[Quantity::Energy].size(); }
+  std::span<const float> counted(Quantity quantity, const CellValues& values) const;
   void count_exceedances(std::uint32_t* over, const CellValues& values, const PerQuantity<float>& largest) const;
 
   Grid grid_;
@@ -109,7 +114,7 @@ class Tally {
   PerQuantity<std::vector<float>> limits_;  // the thresholds for values, which are floats
   std::size_t threshold_count_;             // of all quantities
   Regions layout_;
-  bool keep_total_ = false;
+  bool keep_total_ = false, count_rotation_ = false;
   std::unique_ptr<Hazard> hazard_;  // null: hazard is not counted
   std::unique_ptr<Region[], EndRegions> regions_;
 };

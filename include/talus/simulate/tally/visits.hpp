@@ -32,8 +32,9 @@ inline constexpr double kAnyHeight = std::numeric_limits<double>::infinity();
 
 /// Which parts of a path count in the lengths of a cell.
 struct LengthRules {
-  std::vector<double> energies{};  ///< thresholds of the translational energy [kJ], ascending
+  std::vector<double> energies{};  ///< thresholds of the energy [kJ], ascending
   double below = kAnyHeight;       ///< only where the clearance is smaller [m]
+  bool with_rotation = false;      ///< of the energy with rotation; else of the translational one
 
   std::size_t levels() const { return 1 + energies.size(); }  ///< all counted parts, then those above each threshold
 };
@@ -128,6 +129,7 @@ class VisitBatch {
   const std::unordered_map<std::size_t, RegionVisits>& regions() const { return regions_; }
   std::size_t levels() const { return lengths_.levels(); }
   bool keeps_energy_total() const { return keep_total_; }
+  bool counts_rotation() const { return lengths_.with_rotation; }
   bool has_pieces() const { return pieces_; }
 
  private:
@@ -137,6 +139,7 @@ class VisitBatch {
   Visit& visit(int column, int row) { return column == column_ && row == row_ ? *visit_ : new_visit(column, row); }
   Visit& new_visit(int column, int row);
   void begin(Trajectory trajectory);
+  void set_limits(double rotation);
   void add(const Path& path, std::size_t from, std::size_t to);
   void add(std::span<const Span> spans);
   void raise_total(const Span& span, const Moment& from, const Moment& to);
@@ -149,8 +152,9 @@ class VisitBatch {
 
   Grid grid_;
   LengthRules lengths_;
-  std::vector<float> limits_;  // square of the speed at each energy threshold, for the mass of the trajectory [m^2/s^2]
-  std::vector<float> here_;    // lengths of the current visit by the number of thresholds that they are above [m]
+  std::vector<float>
+      limits_;               // square of the speed at each energy threshold, for the mass and rotation of now [m^2/s^2]
+  std::vector<float> here_;  // lengths of the current visit by the number of thresholds that they are above [m]
   Regions layout_;
   std::unordered_map<std::size_t, RegionVisits> regions_;
   std::vector<VisitList::Piece> spare_;
