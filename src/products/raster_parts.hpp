@@ -23,12 +23,15 @@ inline std::string with_height(const std::string& text, double below) {
 /// The words for the energies that are counted: with rotation they say so.
 inline std::string with_energy(std::string text, bool with_rotation) {
   if (!with_rotation) return text;
-  text = replaced(replaced(text, "ranslational kinetic energy", "otal kinetic energy (with rotation)"), "E > ",
-                  "E with rotation > ");
-  text = replaced(replaced(text, "energy once in", "energy with rotation once in"), "above an energy",
-                  "above an energy (with rotation)");
-  return replaced(replaced(text, " kJ that pass", " kJ (with rotation) that pass"), "by intensity",
-                  "by intensity (energy with rotation)");
+  for (const auto& [translational, total] :
+       {std::pair{"ranslational kinetic energy", "otal kinetic energy (with rotation)"},
+        {"E > ", "E with rotation > "},
+        {"energy once in", "energy with rotation once in"},
+        {"above an energy", "above an energy (with rotation)"},
+        {" kJ that pass", " kJ (with rotation) that pass"},
+        {"by intensity", "by intensity (energy with rotation)"}})
+    text = replaced(text, translational, total);
+  return text;
 }
 
 inline Legend energy_legend(const std::string& band) {

@@ -247,6 +247,11 @@ int hazard(const HazardOptions& options) {
   for (const std::string& warning : warnings_of(record.header)) record.warnings.push_back(warning);
   if (const std::string warning = warning_of_objects(options, record.header); !warning.empty())
     record.warnings.push_back(warning);
+  if (options.matrix.empty() && !record.header.rules.with_rotation)
+    record.warnings.emplace_back(
+        "the classes by default, those of Switzerland, are of energies with rotation, and this run counts "
+        "translational "
+        "ones: classes may be too low (unsafe); take talus run --count-rotation");
   for (std::string& note : talus::io::notes_of_run(folder, {record.frequency, true, false}))
     record.warnings.push_back(std::move(note));
   if (record.width > 0.0 && talus::io::pieces_note(folder)) record.warnings.emplace_back(talus::io::kBoundsOfPieces);
