@@ -21,6 +21,7 @@
 #include "talus/io/files/staged_path.hpp"
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/run_folder.hpp"
+#include "talus/io/results/run_record.hpp"
 
 namespace talus::io {
 namespace {
@@ -58,7 +59,11 @@ RunReport read_report(const fs::path& folder) {
 }
 
 Markup warnings_html(const RunReport& report) {
-  const std::vector<std::string> warnings = all_warnings(report.run, report.hazard);
+  std::vector<std::string> warnings = all_warnings(report.run, report.hazard);
+  std::ranges::stable_partition(warnings, [](const std::string& warning) {  // first those that lower the hazard
+    return says_maps_end_early(warning) || warning.find("the maps do not show how far") != std::string::npos ||
+           warning.find("(unsafe)") != std::string::npos;
+  });
   if (warnings.empty()) return "<p>The run gave no warnings.</p>\n"_html;
   Markup html = "<h3>Warnings</h3>\n<ul>\n"_html;
   for (const std::string& warning : warnings) html += "<li class='look'>"_html + warning + "</li>\n";

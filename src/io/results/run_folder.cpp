@@ -33,9 +33,8 @@ double setting_of(const Json& json, const std::string& key) {
 
 /// Whether a warning of a run holds for all who use its results.
 bool holds_for_all(const std::string& warning) {
-  const auto has = [&warning](std::string_view words) { return warning.find(words) != std::string::npos; };
   return warning.starts_with(kSizeWarning) || warning.starts_with(kGuessWarning) || is_of_frequencies(warning) ||
-         is_of_cut_sources(warning) || has(kTrappedWarning) || has(kGullyWarning) || has(kLimitWarning);
+         is_of_cut_sources(warning) || says_maps_end_early(warning);
 }
 
 /// Those warnings of the run. With another weighting those about frequencies are the ones of that, and those with

@@ -1,5 +1,7 @@
 #include "talus/io/results/run_record.hpp"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -175,6 +177,11 @@ std::optional<std::string> status_of_result(const std::filesystem::path& folder,
   } catch (const std::exception&) {
     return std::nullopt;  // no such file, or not one of a run
   }
+}
+
+bool says_maps_end_early(const std::string& warning) {
+  return std::ranges::any_of(std::array{kTrappedWarning, kGullyWarning, kLimitWarning},
+                             [&](std::string_view words) { return warning.find(words) != std::string::npos; });
 }
 
 std::string farther_text(double metres) {

@@ -18,10 +18,12 @@ inline constexpr double kAllowedLimitShare = 0.001;
 /// source, that stay in gullies too steep to rest in.
 inline constexpr double kWarnedLeftShare = 0.01, kWarnedTrappedShare = 0.03, kWarnedHeldShare = 0.03,
                         kWarnedGullyShare = 0.03;
-/// Words of the warnings that maps end too early: all who use the results of the run are told them.
+/// Words of the warnings that maps end too early.
 inline constexpr std::string_view kTrappedWarning = "were trapped in pits or between walls",
                                   kGullyWarning = "stay in gullies steeper than phi",
                                   kLimitWarning = "still moved when they reached the limit of";
+/// Whether a warning of a run is one of these: all who use the results are told them.
+bool says_maps_end_early(const std::string& warning);
 /// Which stops the energy lines of a run are of: ", of blocks that stop farther away than 100 m"; nothing if of all.
 std::string farther_text(double metres);
 
