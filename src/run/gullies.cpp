@@ -27,9 +27,10 @@ std::vector<std::string> gully_warnings(const io::GullyRecord& gullies, std::uin
   if (const auto& worst = gullies.worst)
     text += "; most stay at x = " + with_decimals(worst->x, 1) + ", y = " + with_decimals(worst->y, 1) + ": " +
             count_text(worst->blocks) + " of the " + count_text(worst->passages) + " blocks that cross this cell";
-  return {text +
-          "; take a survey with smaller cells; else run on this DEM resampled, too, and take the higher hazard: "
-          "docs/prepare-data.md, \"Resampling\""};
+  return {
+      text +
+      "; take a survey with smaller cells; else run on this DEM resampled by gdalwarp -r cubicspline, too, and take "
+      "the higher hazard: docs/prepare-data.md, \"Resampling\""};
 }
 
 }  // namespace talus::run

@@ -119,10 +119,10 @@ StopFigures write_vectors(const ResultSource& source, const Totals& totals, std:
   return vectors.figures();
 }
 
-/// "energy line from release to stop, of blocks that stop farther away than 100 m: median 33.5 deg, 5 % below 31.4 deg,
-/// least 28.9 deg".
+/// "energy line from release to stop, of 812 blocks that stopped farther away than 100 m: median 33.5 deg, 5 %
+/// below 31.4 deg, least 28.9 deg".
 std::string energy_line_text(const EnergyLines& lines) {
-  return "energy line from release to stop" + io::farther_text(lines.farther_than()) + ": median " +
+  return "energy line from release to stop, " + io::energy_lines_of(lines.count(), lines.farther_than()) + ": median " +
          with_decimals(lines.percentile(0.5), 1) + " deg, 5 % below " + with_decimals(lines.percentile(0.05), 1) +
          " deg, least " + with_decimals(lines.least(), 1) + " deg";
 }

@@ -56,7 +56,8 @@ static std::string advice_on_left(const Totals& totals, std::uint64_t into_gaps)
   return text;
 }
 
-/// Warnings about trajectories that left the terrain or were trapped, if they are many.
+/// Warnings about trajectories that left the terrain or were trapped, if they are many, and of each that a limit cut
+/// short, unless these are too many for the run.
 ///
 /// @param left, trapped  what to say of these after their number
 static std::vector<std::string> warnings_of_ends(const Totals& totals, const std::string& whole,
@@ -74,8 +75,9 @@ static std::vector<std::string> warnings_of_ends(const Totals& totals, const std
   if (!io::too_many_limits(totals))
     tell(totals.limited_blocks, 0.0,
          std::string(io::kLimitWarning) +
-             " time, impacts or vertices: they would go farther; raise [model] time_limit or impact_limit (end = limit "
-             "of the stops shows where)");
+             " time, impacts or vertices, or a piece of them: they would go farther; raise time_limit or impact_limit "
+             "in "
+             "[model], and look at the stops with end = limit");
   return warnings;
 }
 

@@ -169,8 +169,8 @@ class CountRotation(OneThread, KeptRuns, Case):
         for out, words in (("plain", False), ("total", True)):
             self.run_well("report", self.path(out), "-q")
             page = self.read_text(out + "/report.html")
-            for text in ("Energies and classes of objects count the rotation", "energy with rotation [kJ]", "Return period, E &gt; 30 kJ with rotation",
-                         "energy with rotation, return period", "classes and objects count the energy with rotation"):
+            for text in ("Energies and classes of objects count the rotation", "energy with rotation [kJ]", "Return period, total E &gt; 30 kJ",
+                         "total energy (with rotation), return period", "classes and objects count the energy with rotation"):
                 self.assertEqual(text in page, words, text)
             self.assertEqual("Hazard class, energy with rotation" in self.read_text(out + "/talus.qgs"), words)
             self.assertEqual("Objects: hazard curves, energy with rotation" in self.read_text(out + "/talus.qgs"), words)
@@ -194,6 +194,24 @@ class CountRotation(OneThread, KeptRuns, Case):
         self.runs()
         for name in ("energy_exceedance.tif", "passage_density.tif", "hazard_tally.gz"):
             self.assertEqual(self.bytes_of("m/" + name), self.bytes_of("total/" + name), name)
+
+    def test_rounds_and_regions_count_as_one_run(self):
+        self.runs()
+        for out, more in (("rounds", ["--trajectories", "100", "--rounds", "2"]), ("regions", ["--memory", "200M", "--threads", "1"])):
+            self.run_well("run", self.path("s.toml"), "-o", self.path(out), "-q", "--count-rotation", *more)
+            for name in ("energy_exceedance.tif", "passage_density.tif"):
+                self.assertEqual(self.bytes_of(f"{out}/{name}"), self.bytes_of("total/" + name), (out, name))
+
+    def test_swiss_classes_of_translational_energies_are_told(self):
+        self.runs()
+        words = "the Swiss classes count the energy with rotation, this run the translational one"
+        self.write("named.toml", 'energies = [30, 300]\nnames = ["keine", "Rest", "klein", "mittel", "gross"]\n')
+        self.write("own.toml", "energies = [30, 300]\nyears = [10, 100, 300]\n")
+        for out, more, told in (("plain", [], True), ("plain", ["--matrix", self.path("named.toml")], True),
+                                ("plain", ["--matrix", self.path("own.toml")], False), ("total", [], False)):
+            done = self.run_well("hazard", self.path(out), "--overwrite", *more)
+            self.assertEqual(words in done.stderr, told, (out, more))
+            self.assertEqual(any(words in w for w in self.read_json(out + "/hazard.json")["warnings"]), told)
 
     def test_a_tally_of_the_other_setting_is_refused(self):
         self.runs()

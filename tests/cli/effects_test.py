@@ -205,7 +205,7 @@ class Effects(Case):
         (told,) = self.sizes(0.3)
         self.assertIn("0.3 m", told)
         self.assertIn("upper-talus-3d (1 to 1.4 m)", told)
-        self.assertIn("smaller blocks go farther and faster than those", told)
+        self.assertIn("smaller blocks: at both measured sites they went farther", told)
         self.assertNotIn("unsafe", told)
         (told,) = self.sizes(3)
         self.assertIn("larger blocks: run-out and speed too low (unsafe)", told)

@@ -221,7 +221,7 @@ class Content(Report):
                        [("diameter", ogr.OFTReal)])
         self.run_well(*self.arguments(diameter="1.0"), "-q")
         self.assertEqual(self.record("out")["diameters_m"], [1.0, 1.2])
-        self.assertIn("blocks of 1 to 1.2 m: a cell is", self.page().text)
+        self.assertRegex(self.page().text, r"look\s*Cells and blocks\s*cells of 5 m, blocks of 1 to 1.2 m: a cell is 4.2 to 5 diameters")
 
     def test_rare_sizes_are_no_misfit_of_the_ground(self):
         write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), ["cliff"])], [("name", ogr.OFTString)])
@@ -231,6 +231,14 @@ class Content(Report):
         warnings = [w for w in self.record("out")["warnings"] if w.startswith("block sizes: ")]
         self.assertEqual(len(warnings), 1, warnings)  # of the rare class
         self.assertRegex(self.page().text, r"Sizes of the blocks and the fit of the ground\s*no warning")
+
+    def test_cells_above_two_metres_are_to_be_looked_at(self):
+        for cell, mark in ((2.0, "fine"), (2.5, "look")):
+            gdal.Warp(self.path("new.tif"), self.path("dem.tif"), xRes=cell, yRes=cell)
+            self.run_well("run", "--dem", self.path("new.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "1.2",
+                          "--trajectories", "2", "-o", self.path("out"), "-q", "--overwrite")
+            self.assertRegex(self.page("--overwrite").text, rf"{mark}\s*Cells and blocks\s*cells of {cell:g} m, blocks of 1.2 m: a cell is "
+                                                            rf"{cell / 1.2:.1f} diameters wide")
 
     def test_results_of_a_later_version_are_said(self):
         self.results(hazard=False)

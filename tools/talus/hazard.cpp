@@ -97,6 +97,12 @@ std::vector<std::string> warnings_of(const talus::io::HazardHeader& header) {
           "the holes inside it filled (left_into_gaps in run.json counts the blocks that leave into them)"};
 }
 
+/// Whether the limits and classes are those by default, whatever their names.
+bool is_swiss(const talus::HazardMatrix& matrix) {
+  const talus::HazardMatrix swiss;
+  return matrix.energies == swiss.energies && matrix.years == swiss.years && matrix.classes == swiss.classes;
+}
+
 std::vector<std::string> warnings_of(const talus::HazardMatrix& matrix, const talus::HazardRules& rules) {
   std::vector<std::string> warnings;
   for (const double energy : matrix.energies)
@@ -247,11 +253,10 @@ int hazard(const HazardOptions& options) {
   for (const std::string& warning : warnings_of(record.header)) record.warnings.push_back(warning);
   if (const std::string warning = warning_of_objects(options, record.header); !warning.empty())
     record.warnings.push_back(warning);
-  if (options.matrix.empty() && !record.header.rules.with_rotation)
+  if (is_swiss(record.matrix) && !record.header.rules.with_rotation)
     record.warnings.emplace_back(
-        "the classes by default, those of Switzerland, are of energies with rotation, and this run counts "
-        "translational "
-        "ones: classes may be too low (unsafe); take talus run --count-rotation");
+        "the Swiss classes count the energy with rotation, this run the translational one: classes may be too low "
+        "(unsafe); run again with --count-rotation");
   for (std::string& note : talus::io::notes_of_run(folder, {record.frequency, true, false}))
     record.warnings.push_back(std::move(note));
   if (record.width > 0.0 && talus::io::pieces_note(folder)) record.warnings.emplace_back(talus::io::kBoundsOfPieces);

@@ -10,15 +10,16 @@ namespace talus {
 
 /// The energy-line angles of the blocks that stopped or were trapped: counts of steps of 0.01 degrees, equal in any
 /// order. Blocks that a barrier caught would have gone on, and those that left are not at their end: they do not count.
-/// Beside a release the angle says how rough the ground is there, not how far blocks go: if any ends far away, only
-/// those count that do. docs/products.md, "Energy line".
+/// Beside a release the angle says how rough the ground is there, not how far blocks go: if enough end far away, only
+/// those count. docs/products.md, "Energy line".
 class EnergyLines {
  public:
-  static constexpr double kFar = 100.0;  ///< in plan [m]
+  static constexpr double kFar = 100.0;          ///< in plan [m]
+  static constexpr std::uint64_t kEnough = 100;  ///< blocks that end far away, and one in twenty of all
 
   void add(std::span<const StopRow> rows);
 
-  /// Those that count end farther away than this in plan [m]: `kFar`, or 0 if none does.
+  /// Those that count end farther away than this in plan [m]: `kFar`, or 0 if too few do.
   double farther_than() const { return far() ? kFar : 0.0; }
   std::uint64_t count() const { return count_[far()]; }
   /// The smallest angle [deg]. Only if there is one.
@@ -30,7 +31,7 @@ class EnergyLines {
   static constexpr int kPerDegree = 100;
   using Counts = std::vector<std::uint64_t>;  // from -90 degrees on
 
-  std::size_t far() const { return count_[1] > 0 ? 1 : 0; }
+  std::size_t far() const { return count_[1] >= kEnough && 20 * count_[1] >= count_[0] ? 1 : 0; }
 
   std::array<std::uint64_t, 2> count_{};  // of all, and of those that end far away
   std::array<Counts, 2> counts_{Counts(2 * 90 * kPerDegree + 1), Counts(2 * 90 * kPerDegree + 1)};

@@ -92,6 +92,7 @@ void read_counts(const Json& json, RunFacts& run) {
   if (!json.contains("energy_line_deg")) return;
   const Json& line = json.at("energy_line_deg");
   run.energy_line = {number_of(line, "least"), number_of(line, "p5"), number_of(line, "p50")};
+  run.energy_line_stops = number_of(line, "stops");
   run.energy_line_farther = number_of(line, "farther_than_m");
 }
 

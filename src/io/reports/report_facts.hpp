@@ -56,7 +56,8 @@ struct RunFacts {
   std::optional<std::pair<double, double>> diameters;  ///< of the smallest and the largest block [m]; earlier: nothing
   std::vector<std::pair<std::string, double>> ends;    ///< in the order of the record
   std::optional<std::array<double, 3>> energy_line;    ///< least, P5, P50 [deg]
-  double energy_line_farther = 0.0;                    ///< of blocks that stop farther away [m]
+  double energy_line_stops = 0.0;                      ///< how many blocks that is of
+  double energy_line_farther = 0.0;                    ///< those that stopped farther away than this [m]
   std::optional<GullyFacts> gullies;                   ///< nothing in an earlier record
   double left_into_gaps = 0.0;                         ///< 0 in an earlier record
   double left_with_pieces = 0.0;                       ///< blocks of which a piece left; 0 where none may break

@@ -49,10 +49,10 @@ bool is_shown_as(const std::string& name, const Shown& shown) {
 
 /// @param with_rotation  thresholds and hazard count the energy with rotation
 std::string title_of(const std::string& name, const Shown& shown, const std::string& band, bool with_rotation) {
-  const std::string title = shown.title, rest = rest_of(name, shown), counted = with_rotation ? " with rotation" : "";
-  if (name.starts_with("return_period_")) return title + rest + " kJ" + counted;
-  if (name.starts_with("intensity_T")) return title + rest + " years" + (with_rotation ? "," + counted : "");
-  if (name == "hazard_class") return title + (with_rotation ? ", energy" + counted : "");
+  const std::string title = shown.title, rest = rest_of(name, shown);  // a legend has room for 40 letters
+  if (name.starts_with("return_period_")) return (with_rotation ? "Return period, total E > " : title) + rest + " kJ";
+  if (name.starts_with("intensity_T")) return (with_rotation ? "Total energy once in " : title) + rest + " years";
+  if (name == "hazard_class") return title + (with_rotation ? ", total energy" : "");
   const bool quantity = band == "mean" || band == "maximum" || (band.size() == 3 && band.starts_with('P'));
   return quantity ? title + ", " + shortened(band, 20) : title;
 }

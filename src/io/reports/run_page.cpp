@@ -83,8 +83,8 @@ std::string ends_text(const RunFacts& run) {
 std::string energy_line_text(const RunFacts& run) {
   if (!run.energy_line) return "";
   const auto& [least, p5, p50] = *run.energy_line;
-  return "least " + with_digits(least, 4) + ", P5 " + with_digits(p5, 4) + ", P50 " + with_digits(p50, 4) + " deg" +
-         farther_text(run.energy_line_farther);
+  return "least " + with_digits(least, 4) + ", P5 " + with_digits(p5, 4) + ", P50 " + with_digits(p50, 4) + " deg, " +
+         energy_lines_of(static_cast<std::uint64_t>(run.energy_line_stops), run.energy_line_farther);
 }
 
 Markup run_html(const RunReport& report, const std::string& attribution) {
@@ -151,7 +151,7 @@ Markup classes_html(const HazardFacts& hazard, bool with_rotation) {
       "class of the rows counts. A table of objects takes the largest energy within each outline, which is "
       "higher.</p>\n"
       "<table><tr><th>";
-  html += with_rotation ? "energy with rotation, return period</th>"_html : "energy, return period</th>"_html;
+  html += with_rotation ? "total energy (with rotation), return period</th>"_html : "energy, return period</th>"_html;
   for (std::size_t k = 0; k < hazard.classes.front().size(); ++k)
     html += "<th>"_html + between(hazard.years, k, " years") + "</th>";
   html += "</tr>\n";

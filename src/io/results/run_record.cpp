@@ -184,8 +184,9 @@ bool says_maps_end_early(const std::string& warning) {
                              [&](std::string_view words) { return warning.find(words) != std::string::npos; });
 }
 
-std::string farther_text(double metres) {
-  return metres > 0.0 ? ", of blocks that stop farther away than " + text_of(metres) + " m" : "";
+std::string energy_lines_of(std::uint64_t stops, double farther_than) {
+  return "of " + grouped(static_cast<double>(stops)) + " blocks that stopped" +
+         (farther_than > 0.0 ? " farther away than " + text_of(farther_than) + " m" : "");
 }
 
 std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {

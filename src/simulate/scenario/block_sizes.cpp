@@ -29,12 +29,15 @@ bool above(const FittedSizes& sizes, const Range& diameters) {
 /// What is wrong with blocks that are larger, or smaller, than those that the ground was fitted to.
 std::string direction(bool larger, bool smaller) {
   std::string text;
-  if (larger) text += "; larger blocks: run-out and speed too low (unsafe)";
-  if (smaller) text += "; smaller blocks go farther and faster than those, against field experience";
+  if (larger)
+    text +=
+        "; larger blocks: run-out and speed too low (unsafe): run with [effects.block-mass] preset = \"measured\", "
+        "too, "
+        "and take the higher hazard";
+  if (smaller)
+    text += "; smaller blocks: at both measured sites they went farther than by the default ground: fit the ground";
   if (text.empty()) text = "; small blocks run faster and jump higher than large ones, against field experience";
-  return text +
-         ": compare a run with [effects.block-mass] preset = \"measured\"; see docs/physics.md, \"Parameter "
-         "sets\"";
+  return text + ": see docs/physics.md, \"Parameter sets\"";
 }
 
 /// Whether block-mass acts with the numbers of its preset on sizes that the preset was not fitted to. At its reference

@@ -115,7 +115,7 @@ constexpr std::array<Bounds, 21> kLists{{
     {"sources.release_height", "m", "of the release above the terrain", 0.0, 500.0},
     {"sources.frequency", "1/year", "events per year of the whole feature", 0.0, 1e6},
     {"sources.velocity", "m/s", "component of the velocity at the release", -200.0, 200.0},
-    {"output.energy_thresholds", "kJ", "translational kinetic energy", 0.01, 1e9},
+    {"output.energy_thresholds", "kJ", "kinetic energy, translational unless count_rotation", 0.01, 1e9},
     {"output.height_thresholds", "m", "vertical height above the terrain", 0.0, 1e4, kAbove},
     {"output.passages_below", "m", "clearance below which a passage counts in passage densities; 0: any", 0.0, 1e4},
     {"barriers.height", "m", "of the top of a barrier above the ground", 0.0, 100.0},

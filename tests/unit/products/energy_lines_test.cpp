@@ -54,17 +54,24 @@ TEST(EnergyLines, OfTheBlocksThatStopped) {
   EXPECT_EQ(lines.farther_than(), 0.0) << "all stopped at their release";
 }
 
-TEST(EnergyLines, OfThoseFarAwayIfThereAreAny) {
+TEST(EnergyLines, OfThoseFarAwayIfTheyAreEnough) {
   StopRow near{}, far{};
   near.end = far.end = End::Stopped;
   near.x_release = far.x_release = 10.0F, near.y_release = far.y_release = 20.0F;
   near.x = 70.0, near.y = 100.0, near.energy_line = static_cast<float>(12.0 / kDegrees);  // 100 m away in plan
   far.x = 70.1, far.y = 100.0, far.energy_line = static_cast<float>(31.0 / kDegrees);
   EnergyLines lines;
-  lines.add(std::vector{near, near, far});
+  lines.add(std::vector(99, far));
+  EXPECT_EQ(lines.farther_than(), 0.0) << "99 are too few";
+  lines.add(std::vector(1, far));
+  lines.add(std::vector(1900, near));
   EXPECT_EQ(lines.farther_than(), 100.0);
-  EXPECT_EQ(lines.count(), 1U);
+  EXPECT_EQ(lines.count(), 100U);
   EXPECT_NEAR(lines.least(), 31.0, 1e-9);
+  lines.add(std::vector(1, near));
+  EXPECT_EQ(lines.farther_than(), 0.0) << "less than one in twenty";
+  EXPECT_EQ(lines.count(), 2001U);
+  EXPECT_NEAR(lines.least(), 12.0, 1e-9);
 }
 
 }  // namespace

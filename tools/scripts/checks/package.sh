@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes the Debian packages from build/release, installs them in a clean Debian 12, and works there as a user would:
-# program, manual, completion, example, library, processes of MPI, plug-in of QGIS. Needs root (chroot), the network, and
-# about 3 GB for a while.
+# program, manual, completion, example, library, processes of MPI, plug-in of QGIS. Needs root (chroot), the network,
+# and about 3 GB for a while.
 #   tools/scripts/checks/package.sh [BUILD]     BUILD: build/release
 # With TALUS_BASE=FOLDER the bare system is kept there for the next time.
 set -euo pipefail

@@ -24,8 +24,9 @@ inline constexpr std::string_view kTrappedWarning = "were trapped in pits or bet
                                   kLimitWarning = "still moved when they reached the limit of";
 /// Whether a warning of a run is one of these: all who use the results are told them.
 bool says_maps_end_early(const std::string& warning);
-/// Which stops the energy lines of a run are of: ", of blocks that stop farther away than 100 m"; nothing if of all.
-std::string farther_text(double metres);
+/// Which stops the energy lines of a run are of: "of 81 204 blocks that stopped farther away than 100 m".
+/// @param farther_than  [m]; 0: of all
+std::string energy_lines_of(std::uint64_t stops, double farther_than);
 
 /// Seconds of the three stages of a run.
 struct StageSeconds {

@@ -152,9 +152,8 @@ class VisitBatch {
 
   Grid grid_;
   LengthRules lengths_;
-  std::vector<float>
-      limits_;               // square of the speed at each energy threshold, for the mass and rotation of now [m^2/s^2]
-  std::vector<float> here_;  // lengths of the current visit by the number of thresholds that they are above [m]
+  std::vector<float> limits_;  // square of the speed at each energy threshold, for this mass and rotation [m^2/s^2]
+  std::vector<float> here_;    // lengths of the current visit by the number of thresholds that they are above [m]
   Regions layout_;
   std::unordered_map<std::size_t, RegionVisits> regions_;
   std::vector<VisitList::Piece> spare_;
