@@ -75,9 +75,8 @@ static std::vector<std::string> warnings_of_ends(const Totals& totals, const std
   if (!io::too_many_limits(totals))
     tell(totals.limited_blocks, 0.0,
          std::string(io::kLimitWarning) +
-             " time, impacts or vertices, or a piece of them: they would go farther; raise time_limit or impact_limit "
-             "in "
-             "[model], and look at the stops with end = limit");
+             " time, impacts or vertices, or a piece of them: they would go farther; raise time_limit or "
+             "impact_limit in [model], and look at the stops with end = limit");
   return warnings;
 }
 

@@ -32,8 +32,7 @@ std::string direction(bool larger, bool smaller) {
   if (larger)
     text +=
         "; larger blocks: run-out and speed too low (unsafe): run with [effects.block-mass] preset = \"measured\", "
-        "too, "
-        "and take the higher hazard";
+        "too, and take the higher hazard";
   if (smaller)
     text += "; smaller blocks: at both measured sites they went farther than by the default ground: fit the ground";
   if (text.empty()) text = "; small blocks run faster and jump higher than large ones, against field experience";
