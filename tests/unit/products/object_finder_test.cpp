@@ -73,6 +73,19 @@ TEST(ObjectFinder, TakesTheRotationToo) {
   EXPECT_NEAR(without[0].largest, 0.10625, 1e-7);
 }
 
+TEST(ObjectFinder, TheRotationIsThatOfWhatIsLeftAfterABreak) {  // half of the mass, of the same diameter
+  Path path = test::path_of({flight(), flight()}, End::Stopped);
+  path.spins = {{0, 20.0}, {1, 100.0}};
+  Block rest = block();
+  rest.mass = 1.0;
+  path.breaks = {{1, 1, rest}};
+  const Surface surface = plain();
+  const std::vector<HazardObject> objects{wall(8.0, 9.0)};
+  std::vector<ObjectContact> contacts(1);
+  ObjectFinder(surface, wall_at_15(), objects, 0.5, true).add(path, block(), contacts);
+  EXPECT_NEAR(contacts[0].largest, 0.053125 + 0.5, 1e-6);
+}
+
 TEST(ObjectFinder, InASlideTheSquareOfTheSpeedIsLinear) {  // from 10 to 20 m/s in 10 m
   const Span slide{{0, 0}, 0.0F, 0.5F, 1.0F, 0.5F, 0.0F, 0.0F, 0.0F, 0.0F, 10.0F, 20.0F, 0};
   const ObjectContact contact = contact_with(wall(8.0, 9.0), slide);
