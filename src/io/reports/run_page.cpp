@@ -60,10 +60,11 @@ RunReport read_report(const fs::path& folder) {
 
 Markup warnings_html(const RunReport& report) {
   std::vector<std::string> warnings = all_warnings(report.run, report.hazard);
-  std::ranges::stable_partition(warnings, [](const std::string& warning) {  // first those that lower the hazard
+  const auto lowers_the_hazard = [](const std::string& warning) {
     return says_maps_end_early(warning) || warning.find("the maps do not show how far") != std::string::npos ||
            warning.find("(unsafe)") != std::string::npos;
-  });
+  };
+  std::stable_partition(warnings.begin(), warnings.end(), lowers_the_hazard);  // these first
   if (warnings.empty()) return "<p>The run gave no warnings.</p>\n"_html;
   Markup html = "<h3>Warnings</h3>\n<ul>\n"_html;
   for (const std::string& warning : warnings) html += "<li class='look'>"_html + warning + "</li>\n";
