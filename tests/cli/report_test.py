@@ -240,6 +240,13 @@ class Content(Report):
             self.assertRegex(self.page("--overwrite").text, rf"{mark}\s*Cells and blocks\s*cells of {cell:g} m, blocks of 1.2 m: a cell is "
                                                             rf"{cell / 1.2:.1f} diameters wide")
 
+    def test_warnings_that_lower_the_hazard_come_first(self):
+        self.results(hazard=False)
+        told = ["the weather was fine", "5 % of the trajectories (5) were trapped in pits or between walls", "energies may be too low (unsafe)"]
+        self.write("out/run.json", json.dumps({**self.record("out"), "warnings": told}))
+        text = self.page().text
+        self.assertEqual(sorted(told, key=text.index), [*told[1:], told[0]])
+
     def test_results_of_a_later_version_are_said(self):
         self.results(hazard=False)
         self.assertNotIn("was written by Talus", self.page().text)
