@@ -8,6 +8,7 @@
 
 #include "io/files/json.hpp"
 #include "io/gdal/regular_file.hpp"
+#include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/gdal/input_access.hpp"
 #include "talus/io/gdal/lines.hpp"
