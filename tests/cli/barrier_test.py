@@ -198,12 +198,13 @@ class Design(Case):
             self.assertEqual("energies, jumps, run-out and hits may be too low (unsafe): c = " + str(c) in notes, said, notes)
             self.assertEqual("run with --deformation-coefficient 0.15 as well" in notes, said, notes)
 
-    def test_sizes_of_the_run_are_said_again(self):
+    def test_what_the_run_warned_of_is_said_again(self):
         run = self.record()
         before = self.design()[1]["notes"]
-        self.write("out/run.json", json.dumps(run | {"warnings": ["another", "block sizes: diameters are 0.3 m"]}))
+        gullies = "14 % of the trajectories (140) stay in gullies steeper than phi: there"
+        self.write("out/run.json", json.dumps(run | {"warnings": ["another", "block sizes: diameters are 0.3 m", gullies]}))
         _, report, text = self.design()
-        self.assertEqual(report["notes"], ["block sizes: diameters are 0.3 m", *before])
+        self.assertEqual(report["notes"], ["block sizes: diameters are 0.3 m", gullies, *before])
         self.assertIn("\nnote: block sizes: diameters are 0.3 m\n", text)
         self.assertEqual(self.run_well("barrier", self.path("out"), "--screen", "road", "-q").stderr, "")
 
