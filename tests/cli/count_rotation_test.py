@@ -6,7 +6,7 @@ import unittest
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import Case, KeptRuns, OneThread, bands_of, box, write_features
+from support import Case, KeptRuns, OneThread, band_names, bands_of, box, write_features
 
 RUN = """dem = "dem.tif"
 trajectories = 200
@@ -26,11 +26,6 @@ MATRIX = "energies = [8, 30]\n"
 def title_of(path):
     dataset = gdal.Open(path)
     return dataset.GetMetadataItem("TITLE")
-
-
-def band_names(path):
-    dataset = gdal.Open(path)
-    return [dataset.GetRasterBand(i + 1).GetDescription() for i in range(dataset.RasterCount)]
 
 
 class CountRotation(OneThread, KeptRuns, Case):

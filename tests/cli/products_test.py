@@ -4,14 +4,9 @@ import os
 import unittest
 
 import numpy as np
-from osgeo import gdal, ogr
+from osgeo import ogr
 
-from support import NORTH, WEST, Case, bands_of, heights, rows_of, write_dem, write_features
-
-
-def band_names(path):
-    file = gdal.Open(path)
-    return [file.GetRasterBand(i + 1).GetDescription() for i in range(file.RasterCount)]
+from support import NORTH, WEST, Case, band_names, bands_of, heights, rows_of, write_dem, write_features
 
 
 class Release(Case):

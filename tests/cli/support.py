@@ -106,6 +106,11 @@ def sqlite_rows(path, command):
         reader.close()
 
 
+def band_names(path):
+    file = gdal.Open(path)
+    return [file.GetRasterBand(i + 1).GetDescription() for i in range(file.RasterCount)]
+
+
 def bands_of(path):
     return gdal.Open(path).ReadAsArray()
 

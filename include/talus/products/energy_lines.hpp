@@ -15,11 +15,11 @@ namespace talus {
 class EnergyLines {
  public:
   static constexpr double kFar = 100.0;          ///< in plan [m]
-  static constexpr std::uint64_t kEnough = 100;  ///< blocks that end far away, and one in twenty of all
+  static constexpr std::uint64_t kEnough = 100;  ///< least number of far ends; they must be one in twenty of all, too
 
   void add(std::span<const StopRow> rows);
 
-  /// Those that count end farther away than this in plan [m]: `kFar`, or 0 if too few do.
+  /// Distance in plan beyond which blocks that end count [m]: `kFar`, or 0 (all count) if too few end beyond it.
   double farther_than() const { return far() ? kFar : 0.0; }
   std::uint64_t count() const { return count_[far()]; }
   /// The smallest angle [deg]. Only if there is one.

@@ -188,7 +188,7 @@ TEST(Quantities, OfACubicMetreOfRockAtTenMetresPerSecond) {  // 2700 kg: 135 kJ
   EXPECT_EQ(kQuantityTable[index_of(Quantity::Height)].value(maxima, 2700.0), 1.5F);
 }
 
-/// Of the rasters of a run those with thresholds of the energy say that it is with rotation, where it is.
+/// Rasters with thresholds of the energy say that it is with rotation, if it is; the others keep their words.
 TEST(RasterTable, SaysWhichEnergyCounts) {
   RunCounts run = kRun;
   for (const bool with : {false, true}) {

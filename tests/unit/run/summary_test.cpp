@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "talus/io/results/run_record.hpp"
+#include "talus/run/gullies.hpp"
+
 namespace talus::run {
 namespace {
 
@@ -57,6 +60,19 @@ TEST(WarningsOf, TellFromTheFirstThatALimitCutShort) {
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told[0].rfind("0.001 % of the trajectories (1) still moved", 0), 0U) << told[0];
   EXPECT_EQ(profile_warnings(totals), told) << "names no map";
+}
+
+TEST(WarningsOf, AreKnownAsThoseThatMapsEndEarly) {  // hazard and barrier repeat them: they find them by their words
+  Totals totals = of_hundred(40, 0);
+  totals.limited_blocks = totals.ends[static_cast<std::size_t>(End::Limit)] = 4;
+  totals.released = 5000;
+  totals.ends[static_cast<std::size_t>(End::Trapped)] = 400;
+  std::vector<std::string> told = warnings_of(totals);
+  ASSERT_EQ(told.size(), 2U) << "of those that are trapped, and of those that a limit cuts short";
+  for (std::string& text : gully_warnings({400, std::nullopt}, 5000, "trajectories")) told.push_back(std::move(text));
+  ASSERT_EQ(told.size(), 3U);
+  for (const std::string& text : told) EXPECT_TRUE(io::says_maps_end_early(text)) << text;
+  EXPECT_FALSE(io::says_maps_end_early(warnings_of(of_hundred(0, 20)).at(0))) << "they have notes of their own on it";
 }
 
 TEST(EndsText, SaysWhatTheBlocksLeft) {

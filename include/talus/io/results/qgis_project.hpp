@@ -41,7 +41,7 @@ struct ProjectLayer {
   bool shown = false;          ///< at first; of the maps only one: the hazard class, if there is one
   bool counts_energy = false;  ///< its title says so where the run counts the energy with rotation
 };
-/// What the title then ends with.
+/// The end of such a title.
 inline constexpr const char* kWithRotation = ", energy with rotation";
 /// From the top of the group downwards.
 const std::vector<ProjectLayer>& project_layers();
