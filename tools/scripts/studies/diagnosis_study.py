@@ -2,11 +2,11 @@
 """How often is `talus diagnose` right? Makes campaigns with the engine itself and diagnoses them.
 
   tools/scripts/studies/diagnosis_study.py [--talus build/release/talus] [--effects all] [--magnitudes 1,2,0.5] [--blocks 60,120]
-      [--none 20] [--null plain,scatter,grouped,outside] [--base-fits 1] [--again] [--trials 24] [--test-trials 100] [--most-effects 3]
+      [--each 1] [--screens 3] [--none 20] [--null plain,scatter,grouped,outside] [--base-fits 1] [--again] [--trials 24] [--test-trials 100] [--most-effects 3]
       [--threads N] [--jobs 1] [--work DIR] [--seed 1] [-o study.csv]
 
 Each campaign has a slope of its own (length, steepness, a gully, bumps), three zones, blocks of many sizes and shapes, three
-screens and four days. One effect of a known size acts (or none). One simulated trial per block, with errors of measurement,
+screens (--screens, all but one in the meadow) and four days. One effect of a known size acts (or none). One simulated trial per block, with errors of measurement,
 serves as the measurement. A third of the blocks is held out. Prints the confusion matrix, the false alarms and the power by
 magnitude, how many effects were not named though they act above the detection limit that the diagnosis gives for the place
 where they act, and the error on the held-out rows of three models: the ground alone, the model that was
@@ -57,6 +57,9 @@ EFFECTS = {
     "air-drag": {"coefficient": (1.0, "x")},
     "fragmentation": {"threshold": (60.0, "/"), "largest": (0.7, "")},
 }
+
+# Distances of the screens from the northern edge [m]: the first in the talus, the others in the meadow.
+SCREENS = (140, 250, 320)
 
 # Where they act, as the diagnosis calls it; the others everywhere.
 PLACES = {name: "zone meadow" for name, keys in EFFECTS.items() if "zones" in keys} | {"wet-ground": "day 2"}
@@ -158,6 +161,10 @@ def in_groups(g, o, folder, seed, effect, magnitude):
     return stops, passages
 
 
+def screen_distances(count):
+    return (SCREENS[0], *np.linspace(*SCREENS[1:], count - 1))
+
+
 def make(o, folder, effect, magnitude, count, seed, null="plain"):
     """A campaign in `folder`: the measurements of one trial of the model in truth_model.toml."""
     os.makedirs(folder, exist_ok=True)
@@ -165,7 +172,7 @@ def make(o, folder, effect, magnitude, count, seed, null="plain"):
     terrain(g, folder)
     blocks(g, folder, count, null == "grouped")
     top = SOUTH + ROWS * CELL
-    lines = [f'S{i + 1},"LINESTRING ({WEST + 4} {top - d}, {WEST + COLUMNS * CELL - 4} {top - d})"' for i, d in enumerate((140, 250, 320))]
+    lines = [f'S{i + 1},"LINESTRING ({WEST + 4} {top - d}, {WEST + COLUMNS * CELL - 4} {top - d})"' for i, d in enumerate(screen_distances(o.screens))]
     write_text(f"{folder}/screens.csv", "id,wkt\n" + "\n".join(lines) + "\n")
     write_text(f"{folder}/plan.toml", campaign_text("plan", False))
     ground = g.bit_generator.state
@@ -247,6 +254,7 @@ def one(o, effect, magnitude, count, k):
     null = o.null[k % len(o.null)] if effect == "none" else "plain"
     made = effect if null == "plain" else f"none ({null})"
     folder = f"{o.work}/{o.program}-{o.seed}/{effect}-{null}-{magnitude:g}-{count}-{k}"
+    folder += f"-{o.screens}-screens" if o.screens != len(SCREENS) else ""
     if not os.path.exists(f"{folder}/campaign.toml"):
         make(o, folder, effect, magnitude, count, o.seed + 7919 * k + sum(map(ord, effect)) + int(100 * magnitude) + count, null)
     found, truth = diagnose(o, folder)
@@ -270,7 +278,7 @@ def study(o):
     plan = []
     for n in o.blocks:  # so that half of a study has some of everything
         none = [("none", 1.0, n, k) for k in range(o.none)]
-        some = [(e, m, n, 0) for m in o.magnitudes for e in o.effects]
+        some = [(e, m, n, k) for k in range(o.each) for m in o.magnitudes for e in o.effects]
         plan += [p for pair in itertools.zip_longest(some, none) for p in pair if p]
     with ThreadPoolExecutor(o.jobs) as jobs:
         return list(jobs.map(lambda campaign: one(o, *campaign), plan))
@@ -323,6 +331,8 @@ def main():
     parser.add_argument("--effects", type=list_of(str), default="all", help="that act, one at a time")
     parser.add_argument("--magnitudes", type=list_of(float), default="1,2,0.5", help="of the effects, times those of EFFECTS")
     parser.add_argument("--blocks", type=list_of(int), default="60,120", help="of a campaign")
+    parser.add_argument("--each", type=int, default=1, help="campaigns of each effect, magnitude and number of blocks")
+    parser.add_argument("--screens", type=int, default=len(SCREENS), help="of a campaign")
     parser.add_argument("--none", type=int, default=20)
     parser.add_argument("--null", type=list_of(str), default=",".join(NULLS), help="kinds of campaigns without an effect")
     parser.add_argument("--base-fits", type=int, default=1)
