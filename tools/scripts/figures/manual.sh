@@ -27,7 +27,7 @@ ogr2ogr "$work/steep.gpkg" "$work/candidates.gpkg" source_polygons
 ogr2ogr "$work/ground.gpkg" $valley/zones.gpkg -dialect sqlite \
   -sql "SELECT geom, CASE zone WHEN 'road' THEN 'forest-road-3d' ELSE 'upper-talus-3d' END AS preset FROM zones"
 "$talus" run --dem $valley/dem.tif --sources $cliffs --zones "$work/ground.gpkg" --zone-field preset --screens $lines \
-  --trajectories 50 -q -o "$work/job"  # as docs/road-job.md
+  --count-rotation --trajectories 50 -q -o "$work/job"  # as docs/road-job.md
 "$talus" hazard "$work/job" -q --width 10
 "$talus" barrier "$work/job" --screen road -q
 out=$work/valley
@@ -41,11 +41,11 @@ draw reach "$out/reach_probability.tif" --log --classes 0.02,0.05,0.1,0.2,0.5 --
 draw valley_energy "$out/energy.tif" --band 3 --classes 1,30,100,300,1000 --unit kJ --title "Translational energy, P95" --vectors $cliffs $lines
 draw velocity "$out/velocity.tif" --band 3 --classes 1,5,10,15,20,25 --unit m/s --colours viridis --title "Speed, P95" --vectors $cliffs $lines
 draw jump_height "$out/jump_height.tif" --band 3 --classes 0.1,0.5,1,2,4,8 --unit m --colours viridis --title "Jump height, P95" --vectors $cliffs $lines
-draw valley_exceedance "$out/energy_exceedance.tif" --band 2 --classes 1e-5,1e-4,1e-3,1e-2,1e-1 --title "P(E > 300 kJ)" --vectors $cliffs $lines
+draw valley_exceedance "$out/energy_exceedance.tif" --band 2 --classes 1e-5,1e-4,1e-3,1e-2,1e-1 --title "P(E with rotation > 300 kJ)" --vectors $cliffs $lines
 draw passage_density "$out/passage_density.tif" --classes 1e-6,1e-5,1e-4,1e-3,1e-2 --unit 1/m --title "Passage density" --vectors $cliffs $lines
 draw deposits "$out/deposits.tif" --classes 1,3,10,30,100 --unit blocks --colours viridis --title "Blocks that came to rest" --vectors $cliffs $lines $houses
 draw trajectories "" --title "200 of the paths" --vectors "$out/trajectories.gpkg" $cliffs $lines
-draw hazard_return_period "$out/return_period_30.tif" --classes 1,30,100,300,1000,10000 --unit years --colours PuBuGn_r --title "Return period of E > 30 kJ, object 10 m wide" --vectors $cliffs $lines $houses
+draw hazard_return_period "$out/return_period_30.tif" --classes 1,30,100,300,1000,10000 --unit years --colours PuBuGn_r --title "Return period of E with rotation > 30 kJ, object 10 m wide" --vectors $cliffs $lines $houses
 draw hazard_class "$out/hazard_class.tif" --names none,residual,low,medium,high --title "Class of hazard, object 10 m wide" --vectors $cliffs $lines $houses
 draw hazard_undecided "$out/hazard_class.tif" --band 4 --names decided,undecided --title "Class not decided by this number of blocks" --vectors $cliffs
 /usr/bin/python3 $figures/barrier_picture.py "$out" --screen road -o "$pictures/valley_barrier.png" --bin 20

@@ -113,7 +113,7 @@ def main():
     with tempfile.TemporaryDirectory() as work:
         out = os.path.join(work, "valley")
         run("run", {"DEM": dem, "SOURCES": QgsProject.instance().mapLayersByName("cliffs")[0], "FREQUENCY_FIELD": "frequency",
-                    "TRAJECTORIES": 50, "OUT": out, "LOAD": True, "SCREENS": VALLEY + "/screens.gpkg"})
+                    "TRAJECTORIES": 50, "COUNT_ROTATION": True, "OUT": out, "LOAD": True, "SCREENS": VALLEY + "/screens.gpkg"})
         run("hazard", {"FOLDER": out, "WIDTH": 10.0, "OBJECTS": VALLEY + "/houses.gpkg", "LOAD": True})
         project(dem, os.path.join(options.folder, "qgis_results.png"), application)
         sys.stdout.flush()
