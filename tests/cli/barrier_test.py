@@ -469,24 +469,47 @@ class Weights(Case):
         limit = report["reliability"][0]["exceeded"][0]
         self.assertAlmostEqual(limit["per_year"]["value"], above, 9)
         self.assertAlmostEqual(limit["share_by_frequency"], above / total, 9)
-        radius = lambda row: 0.5 * (6.0 / math.pi * float(row["mass_kg"]) / 2700.0)**(1.0 / 3.0)
-        centres = sum(weight for _, weight, row in rows if float(row["jump_height_m"]) + radius(row) > sel)
+        centres = sum(weight for _, weight, row in rows if self.centre(row) > sel)
         self.assertAlmostEqual(report["reliability"][1]["exceeded"][0]["per_year"]["value"], centres, 9)
         self.assertGreater(centres, above)
         self.assertAlmostEqual(sum(row["crossings_per_year"]["value"] for row in report["stretches"]) / total, 1.0, 9)
         return total
 
+    @staticmethod
+    def centre(row):
+        """Of a sphere of 2700 kg/m3, whose lowest point is at the jump height."""
+        return float(row["jump_height_m"]) + 0.5 * (6.0 / math.pi * float(row["mass_kg"]) / 2700.0)**(1.0 / 3.0)
+
     def expect_once_in(self, report, west, east):
-        """The speed that all as fast together reach once in so many years, summed again from the crossings."""
-        for row in report["once_in"]:
-            rate = 0.0
-            for speed, weight, _ in reversed(self.crossings(west, east)):
-                rate += weight
-                if rate * row["years"] >= 1.0:
-                    break
-            self.assertEqual(row["speed_ms"]["value"], speed)
-            self.assertLessEqual(row["speed_ms"]["low"], speed)
-            self.assertTrue(row["speed_ms"]["high"] is None or row["speed_ms"]["high"] >= speed)
+        """The value that all as large together reach once in so many years, summed again from the crossings."""
+        for key, value_of in (("speed_ms", lambda row: float(row["speed_ms"])), ("centre_height_m", self.centre)):
+            crossings = sorted(((value_of(row), weight) for _, weight, row in self.crossings(west, east)), reverse=True)
+            for row in report["once_in"]:
+                rate = 0.0
+                for value, weight in crossings:
+                    rate += weight
+                    if rate * row["years"] >= 1.0:
+                        break
+                self.assertAlmostEqual(row[key]["value"], value, 3)
+                self.assertLessEqual(row[key]["low"], value + 1e-3)
+                self.assertTrue(row[key]["high"] is None or row[key]["high"] >= value - 1e-3)
+
+    def test_a_design_that_is_exceeded_too_often(self):
+        self.run_well("run", self.scenario, "-o", self.path("out"))
+        small = self.report("--volume", "0.01", "--gTr", "1", "--gDp", "1")
+        notes = [note for note in small["notes"] if "more often than once in 300 years" in note]
+        self.assertEqual(len(notes), 1)
+        energy, centre = (small["once_in"][-1][key]["value"] for key in ("energy_kj", "centre_height_m"))
+        design = {row["name"]: row["value"] for row in small["design"]}
+        self.assertGreater(energy, design["SEL"])
+        self.assertGreater(centre, design["h_i"])
+        told = [float(number) for number in re.findall(r"[0-9.]+(?= kJ| m above| m\))", notes[0])]
+        for said, value in zip(told, (energy, design["SEL"], centre, design["h_i"]), strict=True):
+            self.assertAlmostEqual(said / value, 1.0, 2)
+        rare = self.report("--volume", "0.01", "--gTr", "1", "--gDp", "1", "--return-periods", "0.01")
+        large = self.report("--volume", "500", "--gTr", "3")
+        for report in (rare, large):  # crossings are rarer than once in 0.01 years
+            self.assertFalse([note for note in report["notes"] if "more often" in note])
 
     def test_values_by_return_period(self):
         self.run_well("run", self.scenario, "-o", self.path("out"))

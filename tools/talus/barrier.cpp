@@ -350,9 +350,14 @@ void add_crossings_per_year(BarrierReport& report, const Weighting& weighting) {
   report.per_year = weighting.per_year(weighting.line);
 }
 
-/// Adds the values that crossings reach once in some years.
+/// The height of a block's centre [m]. @param density  of the rock [kg/m^3]
+double centre_of(const talus::LineCrossing& c, double density) {
+  return c.height + 0.5 * talus::diameter_of(c.mass / density);
+}
+
+/// Adds the values that crossings reach once in some years. @param density  of the rock [kg/m^3]
 void add_return_periods(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
-                        const Weighting& weighting, std::vector<double> years) {
+                        const Weighting& weighting, std::vector<double> years, double density) {
   if (!weighting.scale) return;
   if (years.empty()) years = talus::HazardMatrix{}.years;
   std::ranges::sort(years);
@@ -363,8 +368,11 @@ void add_return_periods(BarrierReport& report, std::span<const talus::LineCrossi
   };
   const auto energy = once_in([](const talus::LineCrossing& c) { return 1e-3 * c.energy(); });
   const auto height = once_in([](const talus::LineCrossing& c) { return c.height; });
+  const auto centre = once_in([density](const talus::LineCrossing& c) { return centre_of(c, density); });
   const auto speed = once_in([](const talus::LineCrossing& c) { return c.speed; });
-  for (std::size_t i = 0; i < years.size(); ++i) report.once_in.push_back({years[i], energy[i], height[i], speed[i]});
+  for (std::size_t i = 0; i < years.size(); ++i)
+    report.once_in.push_back({years[i], energy[i], height[i], centre[i], speed[i]});
+  if (const auto note = talus::io::often_note(report)) report.notes.push_back(*note);
 }
 
 /// Weighs the crossings. @return  what each counts, with notes on it and on the run
@@ -392,13 +400,13 @@ Weighting add_weighting(std::vector<talus::LineCrossing>& crossings, const Cross
 void add_reliability(Exceedances exceedances, const CrossingTable& values, const talus::BarrierDesign& design,
                      double density) {
   using Crossing = talus::LineCrossing;
-  const auto radius = [density](double mass) { return 0.5 * talus::diameter_of(mass / density); };
   std::vector<double> kilojoules, centres;
   for (const double energy : values.energy) kilojoules.push_back(1e-3 * energy);
   if (values.mass.size() == values.count && values.height.size() == values.count)
-    for (std::size_t i = 0; i < values.mass.size(); ++i) centres.push_back(values.height[i] + radius(values.mass[i]));
+    for (std::size_t i = 0; i < values.mass.size(); ++i)
+      centres.push_back(centre_of({.height = values.height[i], .mass = values.mass[i]}, density));
   exceedances.add({"jump height", "m", &Crossing::height}, values.height, {{"h_i", design.height}});
-  exceedances.add({talus::io::kCentre, "m", [&](const Crossing& c) { return c.height + radius(c.mass); }}, centres,
+  exceedances.add({talus::io::kCentre, "m", [density](const Crossing& c) { return centre_of(c, density); }}, centres,
                   {{"h_i", design.height}});
   exceedances.add({"speed", "m/s", &Crossing::speed}, values.speed, {{"v_d", design.speed}});
   exceedances.add({"energy", "kJ", [](const Crossing& c) { return 1e-3 * c.energy(); }}, kilojoules,
@@ -430,7 +438,7 @@ BarrierReport report_of(const CrossingTable& crossings, const RunSummary& run, c
   if (const auto note = unlikely_note(report)) report.notes.push_back(*note);
   add_crossings_per_year(report, weighting);
   add_reliability({report, blocks, weighting, o.seed}, values, report.design, run.density);
-  add_return_periods(report, blocks, weighting, o.years);
+  add_return_periods(report, blocks, weighting, o.years, run.density);
   return report;
 }
 

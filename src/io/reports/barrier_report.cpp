@@ -95,8 +95,9 @@ std::string once_in_text(const BarrierReport& r) {
                      std::string(kWithFrequency) + " [95 %]\n";
   for (const OnceIn& o : r.once_in)
     text += "  " + cell(readable(o.years) + " years", 12) + cell("energy " + value_once_text(o.energy) + " kJ", 32) +
-            cell("jump height " + value_once_text(o.height) + " m", 34) + "speed " + value_once_text(o.speed) +
-            " m/s\n";
+            cell("jump height " + value_once_text(o.height) + " m", 34) +
+            cell(std::string(kCentre) + " " + value_once_text(o.centre) + " m", 36) + "speed " +
+            value_once_text(o.speed) + " m/s\n";
   return text;
 }
 
@@ -111,6 +112,7 @@ Json once_in_of(const BarrierReport& r) {
     rows.push_back({{"years", o.years},
                     {"energy_kj", bounded(o.energy)},
                     {"jump_height_m", bounded(o.height)},
+                    {"centre_height_m", bounded(o.centre)},
                     {"speed_ms", bounded(o.speed)}});
   return rows;
 }
@@ -250,6 +252,22 @@ std::optional<std::string> write_barrier(const std::filesystem::path& folder, co
 std::string value_once_text(const Bounded& b) {
   return with_digits(b.value, 3) + " [" + with_digits(b.low, 3) + ", " +
          (std::isfinite(b.high) ? with_digits(b.high, 3) : "?") + "]";
+}
+
+std::optional<std::string> often_note(const BarrierReport& r) {
+  if (r.once_in.empty()) return std::nullopt;
+  const OnceIn& rarest = r.once_in.back();
+  const double sel = r.design.sel * 1e-3;
+  std::vector<std::string> texts;
+  if (rarest.energy.value > sel)
+    texts.push_back(with_digits(rarest.energy.value, 3) + " kJ (SEL " + with_digits(sel, 4) + " kJ)");
+  if (rarest.centre.value > r.design.height)
+    texts.push_back("its centre " + with_digits(rarest.centre.value, 3) + " m above the ground (h_i " +
+                    with_digits(r.design.height, 4) + " m)");
+  if (texts.empty()) return std::nullopt;
+  return "blocks exceed this design more often than once in " + readable(rarest.years) +
+         " years: once in so many years one has " + joined(texts) +
+         ". Where that is too often, build for these values: the design is of a share of the blocks, however many fall";
 }
 
 std::string frequency_text(const Reliability::Limit& l) {

@@ -51,9 +51,11 @@ BarrierPart part_of(const Json& json) {
     part.design.push_back(
         {one.at("name").get<std::string>(), one.value("unit", ""), one.value("from", ""), number_of(one, "value")});
   read_limits(json, part);
-  for (const Json& one : json.value("once_in", Json::array()))  // not in earlier designs
-    part.once_in.push_back({number_of(one, "years"), bounded_from(one.at("energy_kj")),
-                            bounded_from(one.at("jump_height_m")), bounded_from(one.at("speed_ms"))});
+  for (const Json& one : json.value("once_in", Json::array()))
+    if (one.contains("centre_height_m"))  // not in earlier designs
+      part.once_in.push_back({number_of(one, "years"), bounded_from(one.at("energy_kj")),
+                              bounded_from(one.at("jump_height_m")), bounded_from(one.at("centre_height_m")),
+                              bounded_from(one.at("speed_ms"))});
   for (const Json& one : json.value("stretches", Json::array())) {
     if (part.stretches.size() == kMostStretches) break;
     BarrierPart::Stretch stretch{number_of(one, "from_m"), number_of(one, "to_m"), number_of(one, "crossings")};
@@ -151,11 +153,12 @@ Markup limits_table(const BarrierPart& part) {
 Markup once_in_table(const BarrierPart& part) {
   if (part.once_in.empty()) return {};
   Markup html =
-      "<table><tr><th>reached on the line once in [95 %]</th><th>energy, kJ</th><th>jump height, m</th><th>speed, "
-      "m/s</th></tr>\n"_html;
+      "<table><tr><th>reached on the line once in [95 %]</th><th>energy, kJ</th><th>jump height, m</th>"
+      "<th>centre height, m</th><th>speed, m/s</th></tr>\n"_html;
   for (const OnceIn& o : part.once_in)
     html += "<tr><td>"_html + readable(o.years) + " years</td><td>" + value_once_text(o.energy) + "</td><td>" +
-            value_once_text(o.height) + "</td><td>" + value_once_text(o.speed) + "</td></tr>\n";
+            value_once_text(o.height) + "</td><td>" + value_once_text(o.centre) + "</td><td>" +
+            value_once_text(o.speed) + "</td></tr>\n";
   return html +
          "</table>\n<p class='note'>Of the simulated crossings, without factors. 0: crossings are rarer; ?: too few "
          "trajectories for a bound.</p>\n";

@@ -36,10 +36,11 @@ struct StretchRow {
   std::optional<Bounded> per_year;  ///< crossings [1/year]
 };
 
-/// Energy, jump height and speed that blocks reach at the line once in some years. In the units of the files.
+/// Energy, jump height, height of the centre and speed that blocks reach at the line once in some years. In the units
+/// of the files.
 struct OnceIn {
   double years;
-  Bounded energy, height, speed;  ///< [kJ], [m], [m/s]; 0: crossings are rarer; an infinite bound: not known
+  Bounded energy, height, centre, speed;  ///< [kJ], [m], [m], [m/s]; 0: crossings are rarer; infinite: not known
 };
 
 /// How wide a barrier must be.
@@ -102,6 +103,10 @@ std::optional<std::string> write_barrier(const std::filesystem::path& folder, co
 
 /// The stretches as a table, one row each.
 std::string stretches_csv(const BarrierReport& report);
+
+/// A sentence if blocks have more energy than SEL, or their centre is above h_i, more often than once in the longest of
+/// the return periods.
+std::optional<std::string> often_note(const BarrierReport& report);
 
 /// A sentence if a part of the line lies where the DEM has no height.
 std::optional<std::string> gap_note(double without_height);
