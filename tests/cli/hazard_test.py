@@ -1,5 +1,6 @@
 """talus hazard as a user calls it."""
 import hashlib
+import itertools
 import json
 import math
 import os
@@ -637,12 +638,16 @@ class Hazard(OneThread, KeptRuns, Case):
             self.assertLessEqual(rows[name]["frequency_lower"], rows[name]["frequency"])
             self.assertLessEqual(rows[name]["frequency"], rows[name]["frequency_upper"])
         for row in rows.values():
-            for end in ("", "_lower"):  # the matrix of docs/hazard.md, by 30, 100, 300 years; a row per intensity
-                years = [1.0 / row[f"frequency{kj}{end}"] if row[f"frequency{kj}{end}"] > 0.0 else math.inf for kj in ("", "_30", "_300")]
+            # The matrix of docs/hazard.md, by 30, 100, 300 years; a row per intensity
+            for (name, of), end in itertools.product((("hazard_class", "frequency"), ("entry_class", "entry")), ("", "_lower")):
+                rates = [row[key + end] for key in ("frequency", of + "_30", of + "_300")]
+                years = [1.0 / rate if rate > 0.0 else math.inf for rate in rates]
                 classes = [rows_of_class[sum(t > limit * (1 + 1e-9) for limit in (30, 100, 300))]
                            for t, rows_of_class in zip(years, ((3, 2, 2, 1), (4, 3, 3, 1), (4, 4, 4, 1))) if t < math.inf]
-                self.assertEqual(row["hazard_class" + end], max(classes, default=0), (row["object"], end, years))
+                self.assertEqual(row[name + end], max(classes, default=0), (row["object"], name + end, years))
             self.assertGreaterEqual(row["hazard_class_upper"], row["hazard_class"])
+            self.assertGreaterEqual(row["entry_class_upper"], row["entry_class"])
+            self.assertGreaterEqual(row["hazard_class"], row["entry_class"])  # the energy at the entry is not the larger one
         self.assertGreater(rows["A"]["hazard_class"], rows["C"]["hazard_class"])
         # Every cell that a house wholly covers is crossed less often than the house is hit.
         frequency = bands_of(self.path("out/annual_frequency.tif"))[0]

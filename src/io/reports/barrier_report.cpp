@@ -262,11 +262,11 @@ std::optional<std::string> often_note(const BarrierReport& r) {
   if (rarest.energy.value > sel)
     texts.push_back(with_digits(rarest.energy.value, 3) + " kJ (SEL " + with_digits(sel, 4) + " kJ)");
   if (rarest.centre.value > r.design.height)
-    texts.push_back("its centre " + with_digits(rarest.centre.value, 3) + " m above the ground (h_i " +
+    texts.push_back("their centre " + with_digits(rarest.centre.value, 3) + " m above the ground (h_i " +
                     with_digits(r.design.height, 4) + " m)");
   if (texts.empty()) return std::nullopt;
   return "blocks exceed this design more often than once in " + readable(rarest.years) +
-         " years: once in so many years one has " + joined(texts) +
+         " years: those of once in so many years have " + joined(texts) +
          ". Where that is too often, build for these values: the design is of a share of the blocks, however many fall";
 }
 

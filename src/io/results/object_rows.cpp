@@ -52,6 +52,14 @@ Bounded curve_point(const HazardCurve& curve, const EnergyBins& bins, std::size_
   return threshold ? curve.exceedance(*threshold) : curve.at(i);
 }
 
+/// The number of the class of hazard by a curve, with those by the bounds.
+Bounded class_by(const HazardCurve& curve, const HazardMatrix& matrix) {
+  std::vector<Bounded> frequencies{curve.passage()};
+  for (const double energy : matrix.energies) frequencies.push_back(curve.exceedance_of(energy));
+  const BoundedClass found = class_of(matrix, frequencies);
+  return {static_cast<double>(found.value), static_cast<double>(found.low), static_cast<double>(found.high)};
+}
+
 }  // namespace
 
 Figures figures_of(const HazardRules& rules, const ObjectHits& hits, double without_height,
@@ -72,11 +80,8 @@ Figures figures_of(const HazardRules& rules, const ObjectHits& hits, double with
     add("entry_" + text_of(thresholds[i]), entry.exceedance(i));
   }
   for (const double t : matrix.years) add("energy_T" + text_of(t), curve.energy_once_in(t));
-  std::vector<Bounded> frequencies{curve.passage()};
-  for (const double energy : matrix.energies) frequencies.push_back(curve.exceedance_of(energy));
-  const BoundedClass found = class_of(matrix, frequencies);
-  add("hazard_class",
-      {static_cast<double>(found.value), static_cast<double>(found.low), static_cast<double>(found.high)});
+  add("hazard_class", class_by(curve, matrix));
+  add("entry_class", class_by(entry, matrix));
   for (auto& [name, value] : figures)
     if (!(without_height < 1.0) || (without_height >= kNoticedWithoutHeight && is_upper_bound(name))) value = kNotGiven;
   figures.emplace_back("share_without_height", without_height);
