@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "talus/base/expect.hpp"
+#include "talus/base/open_file.hpp"
 
 namespace talus {
 namespace {
@@ -42,16 +43,16 @@ class ScratchFile::Mapping {
  public:
   Mapping(std::string folder, std::size_t limit) : folder_(std::move(folder)), limit_(limit) {
     open();
-    status_ = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+    status_ = OpenFile(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC));
     void* const reserved = mmap(nullptr, kReserved, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (reserved != MAP_FAILED) begin_ = static_cast<char*>(reserved);
-    if (file_ >= 0 && status_ >= 0 && begin_ != nullptr) return;
+    if (file_ && status_ && begin_ != nullptr) return;
     const int cause = errno;
-    close_all();
+    unmap();
     throw std::runtime_error(folder_ + ": no file for --memory can be made there (" +
                              std::system_category().message(cause) + "); write the results to another folder");
   }
-  ~Mapping() { close_all(); }
+  ~Mapping() { unmap(); }
   Mapping(const Mapping&) = delete;
   Mapping& operator=(const Mapping&) = delete;
 
@@ -87,7 +88,8 @@ class ScratchFile::Mapping {
   void keep_below_limit() const noexcept {
     std::array<char, 128> text{};
     unsigned long pages = 0;
-    if (pread(status_, text.data(), text.size() - 1, 0) <= 0 || std::sscanf(text.data(), "%*u %lu", &pages) != 1)
+    if (pread(status_.number(), text.data(), text.size() - 1, 0) <= 0 ||
+        std::sscanf(text.data(), "%*u %lu", &pages) != 1)
       return;
     if (static_cast<double>(pages) * static_cast<double>(page_) < kNear * static_cast<double>(limit_)) return;
     madvise(begin_, mapped_, MADV_DONTNEED);  // the mapping is shared, so the data stay in the file
@@ -95,31 +97,30 @@ class ScratchFile::Mapping {
 
  private:
   void open() {
-    file_ = ::open(folder_.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    if (file_ >= 0) return;
+    file_ = OpenFile(::open(folder_.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600));
+    if (file_) return;
     std::string name = folder_ + "/.talus-scratch-XXXXXX";  // for a file system without O_TMPFILE
-    file_ = mkostemp(name.data(), O_CLOEXEC);
-    if (file_ >= 0) unlink(name.c_str());
+    file_ = OpenFile(mkostemp(name.data(), O_CLOEXEC));
+    if (file_) unlink(name.c_str());
   }
 
-  void close_all() const {
+  void unmap() const {
     if (begin_ != nullptr) munmap(begin_, kReserved);
-    for (const int file : {file_, status_})
-      if (file >= 0) close(file);
   }
 
   char* extend(std::size_t bytes) {
     if (used_ + bytes > mapped_) {
       const std::size_t step = (used_ + bytes - mapped_ + kStep - 1) / kStep * kStep;
       int full = EINTR;
-      while (full == EINTR) full = posix_fallocate(file_, static_cast<off_t>(mapped_.load()), static_cast<off_t>(step));
+      while (full == EINTR)
+        full = posix_fallocate(file_.number(), static_cast<off_t>(mapped_.load()), static_cast<off_t>(step));
       if (full != 0)
         throw std::runtime_error(folder_ + ": the file for --memory cannot grow to " +
                                  std::to_string((mapped_ + step) / 1'000'000) + " MB there (" +
                                  std::system_category().message(full) +
                                  "); make room on this disk, or write the results to another one");
       if (mapped_ + step > kReserved || mmap(begin_ + mapped_, step, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED,
-                                             file_, static_cast<off_t>(mapped_.load())) == MAP_FAILED)
+                                             file_.number(), static_cast<off_t>(mapped_.load())) == MAP_FAILED)
         throw std::bad_alloc();
       mapped_ += step;
     }
@@ -129,7 +130,7 @@ class ScratchFile::Mapping {
   }
 
   std::string folder_;
-  int file_ = -1, status_ = -1;
+  OpenFile file_, status_;
   const long page_ = sysconf(_SC_PAGESIZE);
   char* begin_ = nullptr;
   std::size_t limit_ = 0, used_ = 0;

@@ -1,11 +1,13 @@
 #include "talus/products/hazard_table.hpp"
 
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "raster_parts.hpp"
 #include "talus/base/expect.hpp"
+#include "talus/products/energy_words.hpp"
 
 namespace talus {
 namespace {
@@ -39,22 +41,28 @@ void push_curve(const HazardPlace& place, Figures& figures) {
     figures.push_back(static_cast<float>(place.curve->frequency_from(of.bin)));
 }
 
+std::string capitalised(std::string text) {
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
 /// The classes of the matrix.
-HazardRaster class_raster() {
-  return {.map = {"hazard_class",
-                  "Class of hazard of the cell by intensity and return period, in plan, at any height",
-                  Kind::Count,
-                  {{"class", "class"},
-                   {"class at lower bound", "class"},
-                   {"class at upper bound", "class"},
-                   {"undecided", "1"},
-                   {"cut short", "1"}},
-                  {{1, 2, 3, 4, 5}, 1.0, "", Palette::HazardClasses, "", true, true}},
-          .meaning =
-              "class of the matrix; `undecided` is 1 where the classes at the bounds differ, `cut short` where "
-              "paths leave the map",
-          .figures = [](const HazardPlace& place, std::size_t, Figures& figures) { push_classes(place, figures); },
-          .has_classes = true};
+HazardRaster class_raster(const EnergyWords& energy) {
+  return {
+      .map = {"hazard_class",
+              "Class of hazard of the cell by intensity" + energy.remark + " and return period, in plan, at any height",
+              Kind::Count,
+              {{"class", "class"},
+               {"class at lower bound", "class"},
+               {"class at upper bound", "class"},
+               {"undecided", "1"},
+               {"cut short", "1"}},
+              {{1, 2, 3, 4, 5}, 1.0, "", Palette::HazardClasses, "", true, true}},
+      .meaning =
+          "class of the matrix; `undecided` is 1 where the classes at the bounds differ, `cut short` where "
+          "paths leave the map",
+      .figures = [](const HazardPlace& place, std::size_t, Figures& figures) { push_classes(place, figures); },
+      .has_classes = true};
 }
 
 HazardRaster annual_frequency() {
@@ -67,11 +75,12 @@ HazardRaster annual_frequency() {
           .figures = [](const HazardPlace& place, std::size_t, Figures& figures) { push(figures, place.levels[0]); }};
 }
 
-HazardRaster return_periods() {
+HazardRaster return_periods(const EnergyWords& energy) {
   return {.map = {"return_period_<kJ>",
-                  "Years between blocks of more than <kJ> kJ that pass the cell, in plan, at any height",
+                  "Years between blocks of more than <kJ> kJ" + energy.remark +
+                      " that pass the cell, in plan, at any height",
                   Kind::Quantity,
-                  bounded_bands("return period of E > <kJ> kJ", "years"),
+                  bounded_bands("return period of " + energy.symbol + " > <kJ> kJ", "years"),
                   {{10, 30, 100, 300, 1000}, 1.0, "years", Palette::PuBuGnFromDark, "", false},
                   true},
           .meaning = "1 / frequency of exceeding the energy; one file per energy threshold",
@@ -84,12 +93,12 @@ HazardRaster return_periods() {
               }};
 }
 
-HazardRaster intensities() {
+HazardRaster intensities(const EnergyWords& energy) {
   Legend legend = energy_legend("");
   legend.names_in_file = true;
   return {
-      .map = {"intensity_T<years>", "Translational kinetic energy that is exceeded once in <years> years in the cell",
-              Kind::Quantity, bounded_bands("energy once in <years> years", "kJ"), std::move(legend)},
+      .map = {"intensity_T<years>", capitalised(energy.noun) + " that is exceeded once in <years> years in the cell",
+              Kind::Quantity, bounded_bands(energy.name + " once in <years> years", "kJ"), std::move(legend)},
       .meaning = "energy that is exceeded once in so many years",
       .figures = [](const HazardPlace& place, std::size_t i,
                     Figures& figures) { push(figures, place.curve->energy_once_in(place.matrix.years[i])); },
@@ -98,15 +107,16 @@ HazardRaster intensities() {
       .needs_curve = true};
 }
 
-HazardRaster hazard_curves() {
-  return {.map = {"hazard_curves",
-                  "Mean number of blocks above an energy that pass the cell in a year, in plan, at any height",
-                  Kind::Quantity,
-                  {{"annual frequency of E > <kJ> kJ (in plan, at any height)", "1/year"}},
-                  {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 1.0, "1/year", Palette::Plasma}},
-          .meaning = "trajectories above the energy per year; one band per energy; with `--curves`",
-          .figures = [](const HazardPlace& place, std::size_t, Figures& figures) { push_curve(place, figures); },
-          .band_energies = energies_of_curves};
+HazardRaster hazard_curves(const EnergyWords& energy) {
+  return {
+      .map = {"hazard_curves",
+              "Mean number of blocks above an " + energy.name + " that pass the cell in a year, in plan, at any height",
+              Kind::Quantity,
+              {{"annual frequency of " + energy.symbol + " > <kJ> kJ (in plan, at any height)", "1/year"}},
+              {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 1.0, "1/year", Palette::Plasma}},
+      .meaning = "trajectories above the energy per year; one band per energy; with `--curves`",
+      .figures = [](const HazardPlace& place, std::size_t, Figures& figures) { push_curve(place, figures); },
+      .band_energies = energies_of_curves};
 }
 
 Map with_number(Map map, const std::string& placeholder, double value) {
@@ -133,12 +143,16 @@ Map of_object(Map map, const ObjectWidth& object) {
   return map;
 }
 
+std::vector<HazardRaster> make_hazard_rasters(const EnergyWords& energy) {
+  return {annual_frequency(), return_periods(energy), intensities(energy), class_raster(energy), hazard_curves(energy)};
+}
+
 }  // namespace
 
-const std::vector<HazardRaster>& hazard_rasters() {
-  static const std::vector<HazardRaster> all{annual_frequency(), return_periods(), intensities(), class_raster(),
-                                             hazard_curves()};
-  return all;
+const std::vector<HazardRaster>& hazard_rasters(bool with_rotation) {
+  static const std::vector<HazardRaster> translational = make_hazard_rasters(energy_words(false));
+  static const std::vector<HazardRaster> total = make_hazard_rasters(energy_words(true));
+  return with_rotation ? total : translational;
 }
 
 Bounded HazardPlace::exceedance_of(double energy) const {
@@ -158,7 +172,7 @@ std::vector<double> energies_of_curves(const HazardRules& rules, const ObjectWid
 std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatrix& matrix, const ObjectWidth& object,
                                       bool curves) {
   std::vector<HazardMap> maps;
-  for (const HazardRaster& raster : hazard_rasters()) {
+  for (const HazardRaster& raster : hazard_rasters(rules.with_rotation)) {
     if (raster.needs_curve && object.width > 0.0) continue;
     if (raster.band_energies) {
       if (curves) maps.push_back({&raster, 0, with_bands(raster.map, raster.band_energies(rules, object))});
@@ -175,10 +189,6 @@ std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatr
   }
   if (object.width > 0.0)
     for (HazardMap& map : maps) map.map = of_object(std::move(map.map), object);
-  for (HazardMap& map : maps) {
-    map.map.title = with_energy(std::move(map.map.title), rules.with_rotation);
-    for (Map::Band& band : map.map.bands) band.name = with_energy(std::move(band.name), rules.with_rotation);
-  }
   return maps;
 }
 

@@ -147,9 +147,8 @@ std::vector<Map> make_maps(const Scenario& scenario, const Tally& tally) {
     return released[region] || tally.is_touched(region) ? Quiet::No : quiet_terrain(heights, window);
   });
   std::vector<Map> maps;
-  for (const RunRaster& raster : run_rasters()) {
+  for (const RunRaster& raster : run_rasters(scenario.output.count_rotation)) {
     Map map = raster.map;
-    map.title = title_of(raster, run);
     map.bands = bands_of(raster, run);
     if (map.bands.empty()) continue;
     const std::vector<double> untouched = untouched_values(raster, run, map.bands.size());

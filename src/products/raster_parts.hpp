@@ -20,20 +20,6 @@ inline std::string with_height(const std::string& text, double below) {
   return below > 0.0 ? replaced(text, kAnyHeightText, "lower than " + text_of(below) + " m above the terrain") : text;
 }
 
-/// The words for the energies that are counted: with rotation they say so.
-inline std::string with_energy(std::string text, bool with_rotation) {
-  if (!with_rotation) return text;
-  for (const auto& [translational, total] :
-       {std::pair{"ranslational kinetic energy", "otal kinetic energy (with rotation)"},
-        {"E > ", "E with rotation > "},
-        {"energy once in", "energy with rotation once in"},
-        {"above an energy", "above an energy (with rotation)"},
-        {" kJ that pass", " kJ (with rotation) that pass"},
-        {"by intensity", "by intensity (energy with rotation)"}})
-    text = replaced(text, translational, total);
-  return text;
-}
-
 inline Legend energy_legend(const std::string& band) {
   return {{30, 100, 300, 1000, 3000}, 1.0, "kJ", Palette::Plasma, band};
 }

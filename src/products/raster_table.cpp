@@ -8,6 +8,7 @@
 
 #include "raster_parts.hpp"
 #include "talus/base/text.hpp"
+#include "talus/products/energy_words.hpp"
 #include "talus/products/interval.hpp"
 #include "talus/products/passage_bounds.hpp"
 #include "talus/products/percentile_bounds.hpp"
@@ -263,7 +264,7 @@ RunRaster release() {
   return raster;
 }
 
-std::vector<RunRaster> make_run_rasters() {
+std::vector<RunRaster> make_run_rasters(const EnergyWords& energy) {
   return {
       {{"impact_probability",
         "Fraction of all released trajectories whose path crosses the cell (in plan, at any height)", Kind::Probability,
@@ -278,7 +279,7 @@ std::vector<RunRaster> make_run_rasters() {
        "share of the trajectories of the source cells of which at least one trajectory reaches the cell",
        reach_probability,
        not_reached},
-      exceedance(Quantity::Energy, "energy_exceedance", "translational kinetic energy", "E"),
+      exceedance(Quantity::Energy, "energy_exceedance", energy.noun, energy.symbol),
       exceedance(Quantity::Height, "height_exceedance", "height above the terrain", "h"),
       {.map = {"passage_density",
                "Mean number of passages of a line 1 m wide per released block: plan length of the paths / (area of the "
@@ -290,7 +291,7 @@ std::vector<RunRaster> make_run_rasters() {
        .rule = passage_density,
        .untouched = no_passage,
        .thresholds_of = Quantity::Energy,
-       .threshold_band = "passage density of E > <limit> (in plan, at any height)",
+       .threshold_band = "passage density of " + energy.symbol + " > <limit> (in plan, at any height)",
        .counts_lengths = true},
       distribution(Quantity::Energy, "translational", energy_legend("P95")),
       energy_total(),
@@ -330,18 +331,13 @@ RunCounts counts_of(const Scenario& scenario) {
           scenario.surface.grid().cell_y,
           scenario.output.passages_below,
           scenario.output.keeps_total(),
-          scenario.output.bounds,
-          scenario.output.count_rotation};
+          scenario.output.bounds};
 }
 
-/// Whether a raster is of energies with rotation that are counted.
-static bool counts_energy(const RunRaster& raster, const RunCounts& run) {
-  return run.with_rotation && raster.thresholds_of == Quantity::Energy;
-}
-
-const std::vector<RunRaster>& run_rasters() {
-  static const std::vector<RunRaster> all = make_run_rasters();
-  return all;
+const std::vector<RunRaster>& run_rasters(bool with_rotation) {
+  static const std::vector<RunRaster> translational = make_run_rasters(energy_words(false));
+  static const std::vector<RunRaster> total = make_run_rasters(energy_words(true));
+  return with_rotation ? total : translational;
 }
 
 std::vector<Map::Band> bands_of(const RunRaster& raster, const RunCounts& run) {
@@ -361,13 +357,7 @@ std::vector<Map::Band> bands_of(const RunRaster& raster, const RunCounts& run) {
   }
   if (raster.counts_lengths)
     for (Map::Band& band : bands) band.name = with_height(band.name, run.passages_below);
-  if (counts_energy(raster, run))
-    for (Map::Band& band : bands) band.name = with_energy(std::move(band.name), true);
   return bands;
-}
-
-std::string title_of(const RunRaster& raster, const RunCounts& run) {
-  return with_energy(raster.map.title, counts_energy(raster, run));
 }
 
 }  // namespace talus

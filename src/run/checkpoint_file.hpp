@@ -1,18 +1,13 @@
 #pragma once
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string>
 
 #include "io/files/checksum.hpp"
+#include "talus/base/open_file.hpp"
 
 namespace talus::run {
 
 using io::Sha256;
-
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
 
 /// Writes a file of a `Checkpoint` and computes its checksum. After `finish` the bytes are on the disk. Throws
 /// std::runtime_error with the name and the cause.
@@ -31,7 +26,7 @@ class CheckpointFileWriter {
  private:
   [[noreturn]] void fail() const;
   std::filesystem::path path_;
-  std::unique_ptr<std::FILE, CloseFile> file_;
+  BufferedFile file_;
   Sha256 sum_;
 };
 
@@ -53,7 +48,7 @@ class CheckpointFileReader {
  private:
   bool read(void* to, std::size_t count);
   std::filesystem::path path_;
-  std::unique_ptr<std::FILE, CloseFile> file_;
+  BufferedFile file_;
   std::uint64_t left_ = 0;
 };
 

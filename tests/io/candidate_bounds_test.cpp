@@ -29,7 +29,7 @@ TEST_F(CandidateBounds, AreThoseOfTheModelFile) {
   const Model base = model_of_slope();
   const auto runs = observe(c, base, {20, 1, 0, 0, fitting_rows(c), {}});
   std::size_t tried = 0;
-  for (const Candidate& candidate : candidates_of(c, base, runs, {})) {
+  for (const Candidate& candidate : candidates_of(c, base, runs, {}, {})) {
     for (const bool upper : {false, true}) {
       Eigen::VectorXd z(std::ssize(candidate.parameters));
       for (std::size_t i = 0; i < candidate.parameters.size(); ++i) {

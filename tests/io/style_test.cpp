@@ -292,6 +292,16 @@ TEST_F(Project, AnIdIsWhatIsBetweenTheEndsOfAName) {
   EXPECT_EQ(layers, 2U) << "a table without a record of a design is the user's own";
 }
 
+TEST_F(Project, TitlesNameTheLowestThreshold) {
+  ProjectGround ground{{"", 0.0, 100.0, 1.0, 1.0}, 10, 10, ""};
+  ground.settings = {{"output.energy_thresholds", "[2.5, 300]", "kJ", "default"},
+                     {"output.count_rotation", "true", "", "default"}};
+  const std::string text =
+      project_of({"energy_exceedance.tif", "height_exceedance.tif"}, path(""), path("out"), ground);
+  EXPECT_NE(text.find("<layername>Share with energy above 2.5 kJ, energy with rotation<"), std::string::npos) << text;
+  EXPECT_NE(text.find("<layername>Share with jump height above the lowest threshold<"), std::string::npos) << text;
+}
+
 TEST_F(Project, NoIdOfALayerBeginsAnother) {
   std::vector<std::string> files;
   for (const ProjectLayer& layer : project_layers())

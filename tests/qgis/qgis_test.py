@@ -1185,7 +1185,7 @@ class FromPython(Case):
         self.assertGreater(len(told), 25)
         for entry in told:
             self.assertIn(entry["title"], texts.GERMAN)
-            for blank in ("<n>", "<id>"):
+            for blank in ("<n>", "<id>", "<threshold>"):
                 self.assertEqual(blank in entry["title"], blank in texts.GERMAN[entry["title"]])
         for name, title in (("return_period_300.tif", "Return period of more than 300 kJ"), ("stops.fgb", "Stops: largest energy of the path"),
                             ("barrier_a_b.csv", "Barrier at a_b: design values"), ("exits.tif", "Exits"), ("mine_too.tif", "mine too.tif")):
@@ -1196,9 +1196,14 @@ class FromPython(Case):
                             ("barrier_mine.csv", "Barrier at mine: design values")):
             self.assertEqual(results.title_of(name, self.folder), title)
         self.assertIn(", energy with rotation", texts.GERMAN)
+        self.assertIn("the lowest threshold", texts.GERMAN)
+        self.assertEqual(results.title_of("energy_exceedance.tif"), "Share with energy above the lowest threshold")
         for value, more in (("false", ""), ("true", ", energy with rotation")):
             with open(self.path("run.json"), "w", encoding="utf-8") as file:
-                json.dump({"settings": [{"key": "seed", "value": 1}, {"key": "output.count_rotation", "value": value}]}, file)
+                json.dump({"settings": [{"key": "seed", "value": 1}, {"key": "output.count_rotation", "value": value},
+                                        {"key": "output.energy_thresholds", "value": "[2.5, 300]", "unit": "kJ"}]}, file)
+            self.assertEqual(results.title_of("energy_exceedance.tif", self.folder), "Share with energy above 2.5 kJ" + more)
+            self.assertEqual(results.title_of("height_exceedance.tif", self.folder), "Share with jump height above the lowest threshold")
             self.assertEqual(results.title_of("return_period_30.tif", self.folder), "Return period of more than 30 kJ" + more)
             self.assertEqual(results.title_of("hazard_class.tif", self.folder), "Hazard class" + more)
             self.assertEqual(results.title_of("energy.tif", self.folder), "Energy, P95")

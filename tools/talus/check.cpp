@@ -19,6 +19,7 @@
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/physics/trace.hpp"
 #include "talus/physics/tracer.hpp"
+#include "talus/products/energy_words.hpp"
 #include "talus/products/expected_cells.hpp"
 #include "talus/products/gap_exits.hpp"
 #include "talus/products/held_at_release.hpp"
@@ -220,7 +221,7 @@ void print_blocks(const Scenario& scenario) {
                                                     " features have a diameter of their own");
   line("releases", count_text(scenario.sources.size()) + " x " + count_text(scenario.trajectories) + " = " +
                        count_text(scenario.released()) + " trajectories, seed " + std::to_string(scenario.seed));
-  line("thresholds", std::string(scenario.output.count_rotation ? "energy with rotation " : "energy ") +
+  line("thresholds", talus::energy_words(scenario.output.count_rotation).name + " " +
                          list_text(scenario.output.energy_thresholds, "kJ") + "; height " +
                          list_text(scenario.output.height_thresholds, "m"));
   line("frequency", frequency_text(scenario));

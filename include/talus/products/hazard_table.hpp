@@ -38,7 +38,8 @@ struct HazardRaster {
   std::function<std::vector<double>(const HazardRules& rules, const ObjectWidth& object)> band_energies{};
 };
 
-const std::vector<HazardRaster>& hazard_rasters();
+/// @param with_rotation  energies count the rotation: titles and bands say so
+const std::vector<HazardRaster>& hazard_rasters(bool with_rotation = false);
 
 /// A map of the hazard of a run, without values.
 struct HazardMap {

@@ -19,7 +19,6 @@ struct RunCounts {
   double cell_x = 1.0, cell_y = 1.0;          ///< size of a cell [m]
   double passages_below = 0.0;                ///< only lower passages count in passage densities [m]; 0: at any height
   bool energy_total = false, bounds = false;  ///< the rasters that are written on request
-  bool with_rotation = false;                 ///< exceedances and lengths count the energy with rotation
 };
 RunCounts counts_of(const Scenario& scenario);
 
@@ -53,11 +52,10 @@ struct RunRaster {
   bool RunCounts::*request{};  ///< the raster is written only if this is set
 };
 
-const std::vector<RunRaster>& run_rasters();
+/// @param with_rotation  exceedances and lengths count the energy with rotation: titles and bands say so
+const std::vector<RunRaster>& run_rasters(bool with_rotation = false);
 
 /// The bands of a raster; empty if it is not written.
 std::vector<Map::Band> bands_of(const RunRaster& raster, const RunCounts& run);
-/// The title of its map.
-std::string title_of(const RunRaster& raster, const RunCounts& run);
 
 }  // namespace talus

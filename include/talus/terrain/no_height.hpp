@@ -10,6 +10,15 @@ namespace talus {
 /// Share without a height from which a place is warned of: below it, a line that ends at the edge of the DEM.
 inline constexpr double kNoticedWithoutHeight = 0.01;
 
+/// Whether blocks get nowhere on a place. @param without  share of it without a height
+inline bool is_all_without_height(double without) {
+  return !(without < 1.0);
+}
+/// Whether blocks do not get to a part of it that is worth a warning.
+inline bool is_partly_without_height(double without) {
+  return without >= kNoticedWithoutHeight && !is_all_without_height(without);
+}
+
 /// Whether the terrain has a height at a place (`Surface::height` has one): not in a gap of the DEM, not beside one,
 /// not in its outer half cell and not off it. Blocks get nowhere else.
 bool has_height(const Raster<float>& heights, const Eigen::Vector2d& place);

@@ -45,16 +45,19 @@ Parameter effect_parameter(const EffectEntry& entry, const EffectField& field, c
   const std::string table = "effects." + std::string(entry.name) + ".", key(entry.key_of(field));
   if (!range.inverse_unit.empty())
     return amount(
-        table + "1/" + key, std::string(range.inverse_unit), range.off, range.noticed, range.lower, range.upper,
+        table + "1/" + key, std::string(range.inverse_unit), range,
         [get = field.get](const Model& m) {
           const double value = get(m.effects);
           return value > 0.0 ? 1.0 / value : 0.0;
         },
         [set = field.set, most = field.max](Model& m, double v) { set(m.effects, v * most > 1.0 ? 1.0 / v : 0.0); });
   const double scale = typical.of(range.times);
+  const SearchRange scaled{.lower = std::max(field.min, range.lower * scale),
+                           .upper = std::min(field.max, range.upper * scale),
+                           .noticed = range.noticed * scale,
+                           .off = range.off};
   return amount(
-      table + key, std::string(field.unit), range.off, range.noticed * scale, std::max(field.min, range.lower * scale),
-      std::min(field.max, range.upper * scale), [get = field.get](const Model& m) { return get(m.effects); },
+      table + key, std::string(field.unit), scaled, [get = field.get](const Model& m) { return get(m.effects); },
       [set = field.set](Model& m, double v) { set(m.effects, v); });
 }
 

@@ -11,7 +11,7 @@ void add_biases(std::vector<Candidate>& list, const Campaign& campaign) {
     list.push_back({"instrument-bias",
                     name + " " + what,
                     {amount(
-                        "instrument-bias." + name + "." + what, "1", 0.0, 0.15, -0.6, 1.5,
+                        "instrument-bias." + name + "." + what, "1", {.lower = -0.6, .upper = 1.5, .noticed = 0.15},
                         [=](const Model& m) { return which < m.bias.size() ? m.bias[which].*quantity : 0.0; },
                         [=](Model& m, double v) { m.bias[which].*quantity = v; })},
                     1,

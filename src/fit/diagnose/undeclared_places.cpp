@@ -56,7 +56,7 @@ Candidate band(const Campaign& campaign, const Axis& axis, double from, double t
   return {"undeclared-zone",
           std::to_string(std::lround(from)) + " to " + std::to_string(std::lround(to)) + " m",
           {amount(
-               "undeclared-zone.damping", "1", 0.0, 1.0, -3.0, 3.0,
+               "undeclared-zone.damping", "1", {.lower = -3.0, .upper = 3.0, .noticed = 1.0},
                [=](const Model& m) { return -ratio(&Ground::En50)(m); },
                [](Model& m, double v) {
                  const std::size_t n = m.grounds.size() / 2;
@@ -66,7 +66,8 @@ Candidate band(const Campaign& campaign, const Axis& axis, double from, double t
                    multiply(m.grounds[n + zone], "Et50", exponential(-v));
                  }
                }),
-           amount("undeclared-zone.roughness", "1", 0.0, 0.7, -3.0, 3.0, ratio(&Ground::theta_scale),
+           amount("undeclared-zone.roughness", "1", {.lower = -3.0, .upper = 3.0, .noticed = 0.7},
+                  ratio(&Ground::theta_scale),
                   [](Model& m, double v) {
                     const std::size_t n = m.grounds.size() / 2;
                     for (std::size_t zone = 0; zone < n; ++zone) {
@@ -88,7 +89,7 @@ Candidate barrier(const Axis& axis, double width, double at) {
   return {"undeclared-barrier",
           "at " + std::to_string(std::lround(at)) + " m",
           {amount(
-              "undeclared-barrier.height", "m", 0.0, 1.0, 0.0, 10.0,
+              "undeclared-barrier.height", "m", {.lower = 0.0, .upper = 10.0, .noticed = 1.0},
               [](const Model& m) { return m.barriers.back().height; },
               [](Model& m, double v) { m.barriers.back().height = v; })},
           1,

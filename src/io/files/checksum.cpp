@@ -48,16 +48,15 @@ bool add_auxiliary(Sums& sums, const std::string& path) {
 bool add_file(Sums& sums, const std::string& path) {
   if (!looked_up(path).fault.empty()) return false;
   if (path.ends_with(".aux.xml")) return add_auxiliary(sums, path);
-  VSILFILE* file = VSIFOpenL(name_for_gdal(path).c_str(), "rb");
-  if (file == nullptr) return false;
+  const VsiFile file(VSIFOpenL(name_for_gdal(path).c_str(), "rb"));
+  if (!file) return false;
   std::vector<char> bytes(1U << 16);
   bool first = true;
-  for (std::size_t n = 0; (n = VSIFReadL(bytes.data(), 1, bytes.size(), file)) > 0; first = false) {
+  for (std::size_t n = 0; (n = VSIFReadL(bytes.data(), 1, bytes.size(), file.get())) > 0; first = false) {
     sums.bytes.add({bytes.data(), n});
     if (first) clear_marks_of_sqlite({bytes.data(), n});
     sums.content.add({bytes.data(), n});
   }
-  VSIFCloseL(file);
   return true;
 }
 

@@ -1,7 +1,5 @@
 #include "cog_file.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -179,13 +177,10 @@ std::array<std::byte, kAround> leader_of(std::uint32_t size) {
   return bytes;
 }
 
-/// Closes a file that is written.
-class OpenFile {
+/// Appends to a new file, much at once.
+class CogWriter {
  public:
-  explicit OpenFile(const std::filesystem::path& path) : file_(create_file(path)) {}
-  ~OpenFile() { close(file_); }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
+  explicit CogWriter(const std::filesystem::path& path) : file_(create_file(path)) {}
 
   void append(std::span<const std::byte> bytes) {
     constexpr std::size_t kBuffer = std::size_t{1} << 20U;
@@ -199,7 +194,7 @@ class OpenFile {
   }
 
  private:
-  int file_;
+  OpenFile file_;
   std::vector<std::byte> buffer_;
   std::uint64_t end_ = 0;
 };
@@ -218,7 +213,7 @@ bool write_cog(const std::filesystem::path& path, const CogFormat& format, std::
   const Layout layout(big);
   const std::uint64_t begin = head(format, levels, none, layout).size();
   const std::string first = head(format, levels, offsets_of(levels, begin), layout);
-  OpenFile file(path);
+  CogWriter file(path);
   file.append(std::as_bytes(std::span(first)));
   std::vector<std::byte> tile;
   for (std::size_t i = levels.size(); i-- > 0;)

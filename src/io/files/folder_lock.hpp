@@ -1,7 +1,7 @@
 #pragma once
 #include <filesystem>
-#include <optional>
-#include <utility>
+
+#include "talus/base/open_file.hpp"
 
 namespace talus::io {
 
@@ -19,18 +19,12 @@ class FolderLock {
   static Found take(const std::filesystem::path& folder, bool made, FolderLock& lock);
 
   FolderLock() = default;
-  FolderLock(FolderLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
-  FolderLock& operator=(FolderLock&& other) noexcept {
-    std::swap(file_, other.file_);
-    return *this;
-  }
-  ~FolderLock();
 
   static constexpr const char* kName = ".lock";
 
  private:
-  explicit FolderLock(int file) : file_(file) {}
-  int file_ = -1;
+  explicit FolderLock(int number) : file_(number) {}
+  OpenFile file_;
 };
 
 }  // namespace talus::io

@@ -34,21 +34,22 @@ void move_all(std::span<Byte> bytes, std::uint64_t offset, const char* what, Mov
 
 }  // namespace
 
-int create_file(const std::filesystem::path& path) {
+OpenFile create_file(const std::filesystem::path& path) {
   constexpr mode_t kModeOfFiles = 0666;
-  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, kModeOfFiles);
-  if (file < 0) fail("cannot be created", errno);
+  OpenFile file(open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, kModeOfFiles));
+  if (!file) fail("cannot be created", errno);
   return file;
 }
 
-void write_bytes(int file, std::span<const std::byte> bytes, std::uint64_t offset) {
-  move_all(bytes, offset, "cannot be written",
-           [file](const std::byte* from, std::size_t count, off_t at) { return pwrite(file, from, count, at); });
+void write_bytes(const OpenFile& file, std::span<const std::byte> bytes, std::uint64_t offset) {
+  move_all(bytes, offset, "cannot be written", [&file](const std::byte* from, std::size_t count, off_t at) {
+    return pwrite(file.number(), from, count, at);
+  });
 }
 
-void read_bytes(int file, std::span<std::byte> bytes, std::uint64_t offset) {
+void read_bytes(const OpenFile& file, std::span<std::byte> bytes, std::uint64_t offset) {
   move_all(bytes, offset, "cannot be written",  // a file of ours that cannot be read back
-           [file](std::byte* to, std::size_t count, off_t at) { return pread(file, to, count, at); });
+           [&file](std::byte* to, std::size_t count, off_t at) { return pread(file.number(), to, count, at); });
 }
 
 }  // namespace talus::io

@@ -81,12 +81,10 @@ std::string StagedPath::hidden_prefix(const fs::path& path, const std::string& e
 }
 
 void synchronise(const fs::path& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return;
-  const int result = fsync(file);
+  const OpenFile file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file || fsync(file.number()) == 0) return;
   const int cause = errno;
-  close(file);
-  if (result != 0 && cause != EINVAL && cause != ENOTSUP)
+  if (cause != EINVAL && cause != ENOTSUP)
     throw std::runtime_error(final_name(path.filename().string()) + ": cannot be written: " + system_text(cause));
 }
 

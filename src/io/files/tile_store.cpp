@@ -1,8 +1,5 @@
 #include "tile_store.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include "posix_bytes.hpp"
 
 namespace talus::io {
@@ -12,10 +9,6 @@ namespace fs = std::filesystem;
 TileStore::TileStore(const fs::path& beside)
     : staged_(StagedPath::Kind::File, beside.parent_path() / (beside.stem().string() + "_tiles.tif"), ".tif"),
       file_(create_file(staged_.hidden())) {}
-
-TileStore::~TileStore() {
-  close(file_);
-}
 
 TilePlace TileStore::add(std::span<const std::byte> tile) {
   const TilePlace place{end_.fetch_add(tile.size()), static_cast<std::uint32_t>(tile.size())};

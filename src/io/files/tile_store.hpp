@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "talus/base/open_file.hpp"
 #include "talus/io/files/staged_path.hpp"
 
 namespace talus::io {
@@ -21,9 +22,6 @@ class TileStore {
  public:
   /// @param beside  the file that is being written. Throws std::runtime_error
   explicit TileStore(const std::filesystem::path& beside);
-  ~TileStore();
-  TileStore(const TileStore&) = delete;
-  TileStore& operator=(const TileStore&) = delete;
 
   /// Adds a tile. From any thread. Throws std::runtime_error
   TilePlace add(std::span<const std::byte> tile);
@@ -32,7 +30,7 @@ class TileStore {
 
  private:
   StagedPath staged_;
-  int file_;
+  OpenFile file_;
   std::atomic<std::uint64_t> end_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "dataset.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
@@ -27,18 +28,17 @@ void check_envi(GDALDataset& dataset, const std::string& path, const std::string
 
 /// The lines of a file that hold more than blanks; 0 if there is none.
 std::int64_t filled_lines(const std::string& file) {
-  VSILFILE* const in = VSIFOpenL(file.c_str(), "rb");
-  if (in == nullptr) return 0;
+  const VsiFile in(VSIFOpenL(file.c_str(), "rb"));
+  if (!in) return 0;
   std::vector<char> piece(std::size_t{1} << 20U);
   std::int64_t count = 0;
   bool filled = false;
-  while (const std::size_t read = VSIFReadL(piece.data(), 1, piece.size(), in))
+  while (const std::size_t read = VSIFReadL(piece.data(), 1, piece.size(), in.get()))
     for (const char c : std::span(piece).first(read))
       if (c == '\n')
         count += filled ? 1 : 0, filled = false;
       else
         filled = filled || (c != ' ' && c != '\r');
-  VSIFCloseL(in);
   return count + (filled ? 1 : 0);
 }
 

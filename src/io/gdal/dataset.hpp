@@ -36,6 +36,11 @@ struct CloseDataset {
 };
 using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 
+struct CloseVsiFile {
+  void operator()(VSILFILE* file) const { VSIFCloseL(file); }
+};
+using VsiFile = std::unique_ptr<VSILFILE, CloseVsiFile>;
+
 struct DropFeature {
   void operator()(OGRFeature* feature) const { OGRFeature::DestroyFeature(feature); }
 };

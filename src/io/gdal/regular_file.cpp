@@ -8,32 +8,15 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
-#include <memory>
 #include <system_error>
 
 #include "dataset.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/open_file.hpp"
 
 namespace talus::io {
 
 namespace {
-
-class OpenFile {
- public:
-  /// Does not wait for the other end of a pipe.
-  explicit OpenFile(const std::string& path)
-      : file_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)) {}
-  ~OpenFile() {
-    if (file_ >= 0) close(file_);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-
-  int number() const { return file_; }
-
- private:
-  int file_;
-};
 
 /// Says what a file is that is no regular one; empty for a regular file.
 std::string special_kind(mode_t mode) {
@@ -68,9 +51,9 @@ std::optional<std::string> fault_of_file(const std::string& path) {
 std::string read_file(const std::string& path, const std::string& name, const std::string& what, std::size_t most) {
   const auto refuse = [&](const std::string& fault) { throw InputError(name + ": cannot be read: " + fault); };
   if (const auto fault = fault_of_file(path)) refuse(*fault + ", " + what);
-  const OpenFile file(path);
+  const OpenFile file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));  // waits for no pipe
   struct stat status {};
-  if (file.number() < 0 || fstat(file.number(), &status) != 0)
+  if (!file || fstat(file.number(), &status) != 0)
     throw InputError(name + ": " + reason(errno, path) + ": it must be " + what);
   if (!S_ISREG(status.st_mode)) refuse("is no regular file, must be " + what);
   const auto size = static_cast<std::size_t>(status.st_size);
@@ -92,7 +75,7 @@ std::string read_file(const std::string& path, const std::string& name, const st
 
 std::string read_start(const std::string& name, std::size_t most) {
   const GdalMessages quiet;
-  const std::unique_ptr<VSILFILE, decltype(&VSIFCloseL)> file(VSIFOpenL(name.c_str(), "rb"), VSIFCloseL);
+  const VsiFile file(VSIFOpenL(name.c_str(), "rb"));
   std::string text;
   constexpr std::size_t kStep = 1U << 16U;
   while (file && text.size() <= most) {

@@ -36,14 +36,9 @@ std::string lower_trimmed(const std::string& text) {
   return lowercase(trimmed(text));
 }
 
-struct CloseFile {
-  void operator()(VSILFILE* file) const { VSIFCloseL(file); }
-};
-using File = std::unique_ptr<VSILFILE, CloseFile>;
-
-File opened(const std::string& path) {
+VsiFile opened(const std::string& path) {
   const GdalMessages quiet;
-  return File(VSIFOpenL(path.c_str(), "rb"));
+  return VsiFile(VSIFOpenL(path.c_str(), "rb"));
 }
 
 /// How much of a CSV is read.
@@ -51,7 +46,7 @@ enum class CsvPart { Header, Whole };
 
 /// Structure of a CSV; nothing if it cannot be read (GDAL says why) or is empty.
 std::optional<CsvStructure> structure_of(const std::string& path, CsvPart part = CsvPart::Whole) {
-  const File file = opened(path);
+  const VsiFile file = opened(path);
   if (!file) return std::nullopt;
   std::string piece(std::size_t{1} << 16, '\0');
   std::optional<CsvStructure> structure;
@@ -90,7 +85,7 @@ std::optional<std::string> part_of(const std::string& path, const char* small, c
 /// Throws InputError if a .shp is shorter than its header says: its size in words of two bytes, the highest byte first.
 void check_size_of_shapes(const std::string& shp) {
   std::array<unsigned char, 28> head{};
-  const File file = opened(shp);
+  const VsiFile file = opened(shp);
   if (!file || VSIFReadL(head.data(), 1, head.size(), file.get()) != head.size()) return;  // GDAL says why
   std::uint64_t words = 0;
   for (std::size_t i = 24; i < 28; ++i) words = words << 8 | head[i];
@@ -101,7 +96,7 @@ void check_size_of_shapes(const std::string& shp) {
 /// The number of records in a .dbf. Throws InputError if the file is shorter than its header says.
 std::uint64_t records_of(const std::string& dbf) {
   std::array<unsigned char, 12> head{};
-  const File file = opened(dbf);
+  const VsiFile file = opened(dbf);
   const bool read = file && VSIFReadL(head.data(), 1, head.size(), file.get()) == head.size();
   const auto number = [&head](std::size_t at, std::size_t bytes) {
     std::uint64_t value = 0;

@@ -12,6 +12,7 @@
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/results/run_folder.hpp"
+#include "talus/products/energy_words.hpp"
 
 namespace talus::io {
 namespace {
@@ -110,8 +111,7 @@ Markup curves_drawing(const ObjectsPart& part) {
                          {"stroke-dasharray", dashes}});
     svg.words({{"x", 522}, {"y", y + 4.0}}, shortened(drawn[i]->name, 32));
   }
-  svg.words({{"x", 270}, {"y", 292}, {"text-anchor", "middle"}},
-            part.with_rotation ? "energy with rotation [kJ]" : "energy [kJ]");
+  svg.words({{"x", 270}, {"y", 292}, {"text-anchor", "middle"}}, energy_words(part.with_rotation).name + " [kJ]");
   svg.words({{"x", 4}, {"y", 12}}, "exceeded how often [1/year]");
   return svg.drawing({{"width", 720}, {"height", 298}, {"viewBox", "0 0 720 298"}});
 }

@@ -22,6 +22,7 @@
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/run_record.hpp"
+#include "talus/products/energy_words.hpp"
 
 namespace talus::io {
 namespace {
@@ -152,7 +153,8 @@ Markup classes_html(const HazardFacts& hazard, bool with_rotation) {
       "class of the rows counts. A table of objects takes the largest energy within each outline, which is "
       "higher.</p>\n"
       "<table><tr><th>";
-  html += with_rotation ? "total energy (with rotation), return period</th>"_html : "energy, return period</th>"_html;
+  html += energy_words(with_rotation).name;
+  html += ", return period</th>";
   for (std::size_t k = 0; k < hazard.classes.front().size(); ++k)
     html += "<th>"_html + between(hazard.years, k, " years") + "</th>";
   html += "</tr>\n";

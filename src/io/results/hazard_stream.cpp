@@ -1,7 +1,5 @@
 #include "hazard_stream.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -28,15 +26,14 @@ std::string gzip_name(const std::filesystem::path& file) {
 
 HazardWriter::HazardWriter(const std::filesystem::path& file) : file_(file) {
   try {
-    descriptor_ = create_file(file_);
+    output_ = create_file(file_);
   } catch (const std::runtime_error& error) {
     fail(error.what());
   }
 }
 
 HazardWriter::~HazardWriter() {
-  if (descriptor_ < 0) return;
-  close(descriptor_);
+  if (!output_) return;
   std::error_code ignored;
   std::filesystem::remove(file_, ignored);
 }
@@ -56,7 +53,7 @@ void HazardWriter::write(const std::string& bytes) {
   if (bytes.empty()) return;
   const std::vector<std::byte> gzip = gzipped(std::as_bytes(std::span(bytes)));
   try {
-    write_bytes(descriptor_, gzip, end_);
+    write_bytes(output_, gzip, end_);
   } catch (const std::runtime_error& error) {
     fail(error.what());
   }
@@ -66,9 +63,7 @@ void HazardWriter::write(const std::string& bytes) {
 void HazardWriter::finish() {
   flush();
   write(sum_.digits());
-  const int descriptor = descriptor_;
-  descriptor_ = -1;
-  if (close(descriptor) == 0) return;
+  if (output_.close()) return;
   const int cause = errno;
   std::error_code ignored;
   std::filesystem::remove(file_, ignored);
@@ -81,12 +76,8 @@ void HazardWriter::fail(const std::string& cause) const {
 
 HazardReader::HazardReader(const std::filesystem::path& file) : name_(file.string()) {
   if (const auto fault = fault_of_file(name_)) throw InputError(name_ + ": " + *fault);
-  stream_ = VSIFOpenL(gzip_name(file).c_str(), "rb");
-  if (stream_ == nullptr) fail();
-}
-
-HazardReader::~HazardReader() {
-  if (stream_ != nullptr) VSIFCloseL(stream_);
+  stream_.reset(VSIFOpenL(gzip_name(file).c_str(), "rb"));
+  if (!stream_) fail();
 }
 
 /// Keeps the bytes that are left in the buffer and reads more.
@@ -95,7 +86,7 @@ void HazardReader::fill() {
   next_ = 0;
   const std::size_t left = buffer_.size();
   buffer_.resize(left + kBuffer);
-  buffer_.resize(left + VSIFReadL(&buffer_[left], 1, kBuffer, stream_));
+  buffer_.resize(left + VSIFReadL(&buffer_[left], 1, kBuffer, stream_.get()));
 }
 
 void HazardReader::get(void* bytes, std::size_t count) {

@@ -5,6 +5,7 @@
 
 #include "io/files/checksum.hpp"
 #include "io/gdal/dataset.hpp"
+#include "talus/base/open_file.hpp"
 
 namespace talus::io {
 
@@ -29,7 +30,7 @@ class HazardWriter {
   [[noreturn]] void fail(const std::string& cause) const;
 
   std::filesystem::path file_;
-  int descriptor_ = -1;
+  OpenFile output_;
   std::uint64_t end_ = 0;  // bytes in the file
   std::string buffer_;
   Sha256 sum_;
@@ -39,9 +40,6 @@ class HazardWriter {
 class HazardReader {
  public:
   explicit HazardReader(const std::filesystem::path& file);
-  ~HazardReader();
-  HazardReader(const HazardReader&) = delete;
-  HazardReader& operator=(const HazardReader&) = delete;
 
   void get(void* bytes, std::size_t count);
   template <class Number>
@@ -63,7 +61,7 @@ class HazardReader {
 
   std::string name_;
   GdalMessages messages_;
-  VSILFILE* stream_ = nullptr;
+  VsiFile stream_;
   std::string buffer_;
   std::size_t next_ = 0;
   Sha256 sum_;

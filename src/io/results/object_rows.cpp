@@ -83,7 +83,8 @@ Figures figures_of(const HazardRules& rules, const ObjectHits& hits, double with
   add("hazard_class", class_by(curve, matrix));
   add("entry_class", class_by(entry, matrix));
   for (auto& [name, value] : figures)
-    if (!(without_height < 1.0) || (without_height >= kNoticedWithoutHeight && is_upper_bound(name))) value = kNotGiven;
+    if (is_all_without_height(without_height) || (is_partly_without_height(without_height) && is_upper_bound(name)))
+      value = kNotGiven;
   figures.emplace_back("share_without_height", without_height);
   return figures;
 }

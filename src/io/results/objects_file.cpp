@@ -110,8 +110,8 @@ struct ObjectLayer::State {
   std::size_t lines_of_their_width = 0, lines_of_given_width = 0, lines_of_width_0 = 0, polygons_with_width = 0;
   std::vector<std::string> without_geometry;  // features that are left out
 
-  bool known(std::size_t i) const { return without_height[i] < 1.0; }
-  bool is_partial(std::size_t i) const { return known(i) && without_height[i] >= kNoticedWithoutHeight; }
+  bool known(std::size_t i) const { return !is_all_without_height(without_height[i]); }
+  bool is_partial(std::size_t i) const { return is_partly_without_height(without_height[i]); }
   /// "95 %": how much of an object has no height.
   std::string lack(std::size_t i) const { return percent(without_height[i], 2); }
   void warn_of_places(const std::string& path, const std::vector<bool>& off_map);

@@ -10,12 +10,12 @@
 #include "io/gdal/dataset.hpp"
 #include "io/gdal/geopackage.hpp"
 #include "io/gdal/regular_file.hpp"
-#include "recorded_run.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/gdal/layer_name.hpp"
 #include "talus/io/results/vector_style.hpp"
+#include "talus/products/energy_words.hpp"
 #include "talus/products/raster_table.hpp"
 #include "xml.hpp"
 
@@ -158,14 +158,29 @@ std::vector<std::pair<std::string, std::string>> titles_of(const std::vector<std
   return found;
 }
 
+/// A title with what the settings of the run say: the lowest threshold, and whether energies count the rotation.
+std::string title_in_run(std::string title, const ProjectLayer& layer, const std::vector<Setting>& settings) {
+  std::string threshold = kUnknownThreshold;
+  for (const Setting& setting : settings) {
+    if (setting.key == layer.thresholds) {
+      const Json values = Json::parse(setting.value, nullptr, false);  // "[30, 300]", in ascending order
+      if (values.is_array() && !values.empty()) threshold = text_of(values.front().get<double>()) + " " + setting.unit;
+    }
+    if (setting.key == "output.count_rotation" && setting.value == "true" && layer.counts_energy)
+      title += ", " + energy_words(true).name;
+  }
+  return filled(std::move(title), "<threshold>", threshold);
+}
+
 /// The layers that are there, from the top to the bottom.
-std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs::path& folder, bool count_rotation) {
+std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs::path& folder,
+                                const std::vector<Setting>& settings) {
   std::vector<Shown> shown;
   for (const ProjectLayer& layer : project_layers())
     for (const auto& [title, name] : titles_of(files, folder, layer)) {
       const std::string stem = fs::path(name).stem().string();
-      Shown one{id_of(stem, kind_of(layer.file)), layer.counts_energy && count_rotation ? title + kWithRotation : title,
-                "./" + name, kind_of(layer.file), layer.shown};
+      Shown one{id_of(stem, kind_of(layer.file)), title_in_run(title, layer, settings), "./" + name,
+                kind_of(layer.file), layer.shown};
       if (name.ends_with(".gpkg")) {
         one.source += "|layername=" + stem;
         one.style = parsed_xml(style_in(folder / name, stem));
@@ -348,7 +363,9 @@ ProjectGround ground_of(const Json& run) {
   ground.rows = static_cast<int>(whole_number(grid.at("rows"), 1, 1 << 30));
   for (const Json& input : run.at("inputs")) ground.inputs.push_back({input.at("role"), input.at("path"), ""});
   ground.dem = dem_of(ground.inputs);
-  ground.count_rotation = counts_rotation(run);
+  for (const Json& setting : run.value("settings", Json::array()))
+    if (setting.at("value").is_string())
+      ground.settings.push_back({setting.at("key"), setting.at("value"), setting.value("unit", ""), ""});
   return ground;
 }
 
@@ -379,8 +396,8 @@ const std::vector<ProjectLayer>& project_layers() {
       {"energy_total.tif", "Energy with rotation, P95"},
       {"jump_height.tif", "Jump height, P95"},
       {"velocity.tif", "Speed, P95"},
-      {"energy_exceedance.tif", "Share above the first energy threshold", false, true},
-      {"height_exceedance.tif", "Share above the first height threshold"},
+      {"energy_exceedance.tif", "Share with energy above <threshold>", false, true, "output.energy_thresholds"},
+      {"height_exceedance.tif", "Share with jump height above <threshold>", false, false, "output.height_thresholds"},
       {"energy_bounds.tif", "Energy, upper bound of P95"},
       {"jump_height_bounds.tif", "Jump height, upper bound of P95"},
       {"velocity_bounds.tif", "Speed, upper bound of P95"},
@@ -397,13 +414,12 @@ const std::vector<ProjectLayer>& project_layers() {
 
 ProjectGround ground_of(const LoadedScenario& loaded) {
   const Grid& grid = loaded.scenario.surface.grid();
-  return {
-      loaded.geo, grid.columns, grid.rows, dem_of(loaded.inputs), loaded.inputs, loaded.scenario.output.count_rotation};
+  return {loaded.geo, grid.columns, grid.rows, dem_of(loaded.inputs), loaded.inputs, loaded.settings};
 }
 
 std::string project_of(const std::vector<std::string>& files, const fs::path& folder, const fs::path& shown_as,
                        const ProjectGround& ground) {
-  std::vector<Shown> shown = shown_layers(files, folder, ground.count_rotation);
+  std::vector<Shown> shown = shown_layers(files, folder, ground.settings);
   check_one_map(shown);
   add_inputs(shown, ground, shown_as);
   if (auto hillshade = hillshade_of(ground.dem, shown_as)) shown.push_back(std::move(*hillshade));

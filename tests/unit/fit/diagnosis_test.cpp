@@ -56,7 +56,7 @@ TEST(Residual, OfTheModelsOwnTrialsIsStandardNormal) {
   Campaign c = slope_campaign(20);
   const Model model = model_of_preset(c, "upper-talus-3d");
   measure(c, model, 3);
-  const ResidualSpace space(c, observe(c, model, {200, 1, 0, 0, {}, {}}));
+  const ResidualSpace space(c, observe(c, model, {200, 1, 0, 0, {}, {}}), {});
   const auto others = observe(c, model, {200, 1, 5000, 0, {}, {}});
   double sum = 0.0, squares = 0.0, count = 0.0;
   for (std::size_t b = 0; b < c.blocks.size(); ++b)
@@ -78,7 +78,7 @@ TEST(Residual, ATrialIsRankedAmongTheOthers) {
   const Model model = model_of_preset(c, "upper-talus-3d");
   measure(c, model, 3);
   const auto runs = observe(c, model, {20, 1, 0, 0, {}, {}});
-  const ResidualSpace space(c, runs);
+  const ResidualSpace space(c, runs, {});
   std::vector<double> z;
   std::vector<double> runout;
   for (std::size_t t = 0; t < 20; ++t)
@@ -101,7 +101,7 @@ TEST(Residual, ABlockOfWhichNothingWasSeenSaysNothing) {
   Campaign c = slope_campaign(3);
   const Model model = model_of_preset(c, "upper-talus-3d");
   measure(c, model, 3);
-  const ResidualSpace space(c, observe(c, model, {40, 1, 0, 0, {}, {}}));
+  const ResidualSpace space(c, observe(c, model, {40, 1, 0, 0, {}, {}}), {});
   EXPECT_EQ(space.whitened(Residual::Constant(space.size(), kNotGiven)).norm(), 0.0);
 }
 
@@ -115,7 +115,7 @@ TEST(Residual, TrialsThatLeftWentFarther) {
   measure(c, model, 5);
   for (MeasuredBlock& b : c.blocks) b.holdout = !b.stop;  // those that left
   auto runs = observe(c, model, {kTrials, 1, 0, 0, {}, {}});
-  const ResidualSpace whole(c, runs);
+  const ResidualSpace whole(c, runs, {});
   ASSERT_EQ(whole.observables().front().name, "runout");
   std::vector<double> end(kBlocks);
   for (std::size_t b = 0; b < kBlocks; ++b) {
@@ -128,10 +128,10 @@ TEST(Residual, TrialsThatLeftWentFarther) {
       if (std::hypot(runs[b].x[t] - c.blocks[b].x, runs[b].y[t] - c.blocks[b].y) > end[b])
         runs[b].x[t] = runs[b].y[t] = kNotGiven, runs[b].end[t] = End::Left;
   }
-  const ResidualSpace cut(c, runs);
+  const ResidualSpace cut(c, runs, {});
   Campaign with_a_gap = c;
   std::ranges::find(with_a_gap.blocks, false, &MeasuredBlock::holdout)->stop.reset();
-  const ResidualSpace staying(with_a_gap, runs);
+  const ResidualSpace staying(with_a_gap, runs, {});
   int compared = 0;
   for (std::size_t b = 0; b < kBlocks; ++b) {
     if (!with_a_gap.blocks[b].stop || runout_of(c, c.blocks[b]) > end[b]) continue;
@@ -157,7 +157,7 @@ TEST(ResidualTable, IsSilentAboutTheModelsOwnCrossingsAsOftenAsItSays) {
   int alarms = 0, tables = 0;
   for (; tables < 200; ++tables) {
     measure(c, model, 100 + tables);
-    for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), runs, rows))
+    for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs, {}), runs, rows, {}))
       if (row.observable == "crossed S1" && row.covariate == "mass") alarms += row.p_value < 0.05 ? 1 : 0;
   }
   EXPECT_GT(alarms, 0);
@@ -179,7 +179,8 @@ TEST(ResidualTable, IsSilentAboutEqualValuesAsOftenAsItSays) {
   double share = 0.0;
   for (std::uint32_t table = 0; table < kTables; ++table) {
     for (MeasuredBlock& b : c.blocks) b.passages[0] = Passage{10.0, jump(), kNotGiven};
-    for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), runs, std::vector<bool>(kBlocks, true))) {
+    for (const ResidualRow& row :
+         residual_table(c, ResidualSpace(c, runs, {}), runs, std::vector<bool>(kBlocks, true), {})) {
       if (row.observable != "jump S1" || row.covariate != "spread") continue;
       ++tested;
       share += row.statistic / kTables;
@@ -214,7 +215,7 @@ TEST(ResidualTable, SaysThatFewerBlocksLeftThanShould) {
   for (const std::uint32_t left : {60U, 20U}) {
     auto runs = runs_with_jumps(24, 200, [](std::size_t) { return 0.5; });
     for (BlockRuns& run : runs) run.ends[static_cast<std::size_t>(End::Left)] = left;
-    const auto rows = residual_table(c, ResidualSpace(c, runs), runs, std::vector<bool>(24, true));
+    const auto rows = residual_table(c, ResidualSpace(c, runs, {}), runs, std::vector<bool>(24, true), {});
     const auto row = std::ranges::find(rows, kLeaving, &ResidualRow::observable);
     ASSERT_EQ(row != rows.end(), left == 60);
     if (left != 60) continue;
@@ -232,7 +233,7 @@ TEST(ResidualTable, RanksBlocksAlikeWhoseSharesOfEqualValuesDiffer) {
   test::Numbers numbers(61);
   const auto jump = [&](std::size_t b) { return std::max(0.0, numbers.uniform(b == 0 ? -1.5 : -1.0 / 1.5, 1.0)); };
   for (MeasuredBlock& b : c.blocks) b.passages[0] = Passage{10.0, 0.0, kNotGiven};
-  const ResidualSpace space(c, runs_with_jumps(2, 2000, jump));
+  const ResidualSpace space(c, runs_with_jumps(2, 2000, jump), {});
   const auto& observables = space.observables();
   const auto at = std::ranges::find(observables, "jump S1", &Observable::name) - observables.begin();
   double above = 0.0;
@@ -264,7 +265,7 @@ TEST(ResidualTable, IsSilentWhereTheShareOfEqualValuesGoesWithTheMass) {
       c.blocks[b].passages[0] = Passage{kNotGiven, jump(b), kNotGiven};
       c.blocks[b].stream = stream_of_name(std::to_string(b) + " of " + std::to_string(table));
     }
-    const auto rows = residual_table(c, ResidualSpace(c, runs), runs, std::vector<bool>(kBlocks, true));
+    const auto rows = residual_table(c, ResidualSpace(c, runs, {}), runs, std::vector<bool>(kBlocks, true), {});
     alarms += rows.front().corrected < 0.01 ? 1 : 0;
   }
   std::printf("tables below 1 %%: %.2f %%\n", 100.0 * alarms / kTables);
@@ -285,7 +286,8 @@ TEST(ResidualTable, ThePOfACorrelationOfFewBlocksIsThatOfTheirOrders) {
   DiagnosisRules rules;
   rules.fewest_blocks = 8;
   int rows = 0;
-  for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), runs, std::vector<bool>(8, true), rules)) {
+  for (const ResidualRow& row :
+       residual_table(c, ResidualSpace(c, runs, {}), runs, std::vector<bool>(8, true), rules)) {
     if (row.observable != "jump S1" || row.covariate != "mass") continue;
     ++rows;
     EXPECT_NEAR(row.p_value, kExact, 5.0 * kExact / std::sqrt(50.0));  // 50 arrangements as large are drawn
@@ -310,7 +312,8 @@ TEST(ResidualTable, ARockCountsOnceAgainstItsMass) {
     }
     const auto runs = runs_with_jumps(blocks, 99, [t = 0](std::size_t) mutable { return 0.01 * (t++ % 99) + 0.005; });
     int rows = 0;
-    for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), runs, std::vector<bool>(blocks, true))) {
+    for (const ResidualRow& row :
+         residual_table(c, ResidualSpace(c, runs, {}), runs, std::vector<bool>(blocks, true), {})) {
       EXPECT_FALSE(row.observable == "crossed S1" && row.covariate == "mass");
       if (row.observable != "jump S1" || row.covariate != "mass") continue;
       ++rows;
@@ -367,7 +370,7 @@ Campaign campaign_of_block_mass() {
 TEST(ScoreTest, FindsAnEffectThatMadeTheData) {
   const Campaign c = campaign_of_block_mass();
   const Model model = model_of_preset(c, "upper-talus-3d");
-  const auto list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
+  const auto list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {}, {});
   const ScoreTest test = test_of(c, model, list);
   EXPECT_EQ(test.effects.front().effect, "block-mass");
   EXPECT_LT(test.p_value, 0.01);
@@ -382,21 +385,21 @@ TEST(ScoreTest, FindsTheSetOfWetDays) {
   truth.effects.wet_ground.drag = 1.2;
   truth.effects.wet_ground.days = {1, 3};
   measure(c, truth, 13);
-  const auto list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
+  const auto list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {}, {});
   const ScoreTest test = test_of(c, model, list);
   EXPECT_LT(test.p_value, 0.01);
   const auto wet = std::find_if(test.effects.begin(), test.effects.end(),
                                 [](const EffectVerdict& e) { return e.effect == "wet-ground"; });
   ASSERT_NE(wet, test.effects.end());
   EXPECT_LT(wet->p_value, 0.01);
-  EXPECT_EQ(merged_candidate(c, Axis{}, list, wet->best.members).where, "days 1, 3");
+  EXPECT_EQ(merged_candidate(c, Axis{}, list, wet->best.members, {}).where, "days 1, 3");
 }
 
 TEST(ScoreTest, IsSilentAboutTheModelsOwnDataAsOftenAsItSays) {
   Campaign c = slope_campaign(30);
   const Model model = model_of_preset(c, "upper-talus-3d");
   measure(c, model, 100);
-  std::vector<Candidate> list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
+  std::vector<Candidate> list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {}, {});
   std::erase_if(list, [](const Candidate& x) { return x.effect != "block-mass" && x.effect != "wet-ground"; });
   int alarms = 0, halves = 0;
   constexpr int kSets = 20;
@@ -421,7 +424,7 @@ TEST(ScoreTest, AnotherShapeIsNoEffect) {
   Model truth = model;
   truth.grounds[0].shape_max = 1.15;
   measure(c, truth, 100);
-  std::vector<Candidate> list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
+  std::vector<Candidate> list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {}, {});
   std::erase_if(list, [](const Candidate& x) { return x.effect != "instrument-bias"; });
   int alarms = 0;
   for (std::uint64_t set = 0; set < 20; ++set) {
@@ -442,7 +445,7 @@ TEST(SettledModel, IsTheTrueOneOnAverageAndLeavesNoFalseAlarm) {
   const double true_z = -0.8;
   const Model truth = model_at(model, free, Eigen::VectorXd::Constant(1, true_z));
   measure(c, truth, 100);
-  std::vector<Candidate> list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
+  std::vector<Candidate> list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {}, {});
   std::erase_if(list, [](const Candidate& x) { return x.effect != "instrument-bias"; });
   const std::vector<bool> rows(c.blocks.size(), true);
   const Eigen::VectorXd z = Eigen::VectorXd::Zero(1);
@@ -484,7 +487,7 @@ TEST(SettledModel, HangsNotOnTheThreads) {
   const Model moved = model_at(model, free, z);
   const ObserveOptions of_base{40, 7, 1000, 0, {}, {}};
   const auto runs = observe(c, moved, of_base);
-  std::vector<Candidate> list = candidates_of(c, moved, runs, {});
+  std::vector<Candidate> list = candidates_of(c, moved, runs, {}, {});
   std::erase_if(list, [](const Candidate& x) { return x.effect != "block-mass"; });
   const auto settled = [&](int threads) {
     ScoreTestOptions how = quick();
@@ -508,7 +511,7 @@ TEST(SettledModel, HangsNotOnTheThreads) {
 TEST(SettledModel, LeavesAnEffectToBeFound) {
   const Campaign c = campaign_of_block_mass();
   const Model model = model_of_preset(c, "upper-talus-3d");
-  const auto list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
+  const auto list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {}, {});
   const auto free = ground_of(c, model);
   const std::vector<bool> rows(c.blocks.size(), true);
   const Eigen::VectorXd z = Eigen::VectorXd::Zero(2);

@@ -190,16 +190,14 @@ TEST(Quantities, OfACubicMetreOfRockAtTenMetresPerSecond) {  // 2700 kg: 135 kJ
 
 /// Rasters with thresholds of the energy say that it is with rotation, if it is; the others keep their words.
 TEST(RasterTable, SaysWhichEnergyCounts) {
-  RunCounts run = kRun;
   for (const bool with : {false, true}) {
-    run.with_rotation = with;
-    for (const RunRaster& raster : run_rasters()) {
+    for (const RunRaster& raster : run_rasters(with)) {
       const bool counted = with && raster.thresholds_of == Quantity::Energy;
       if (raster.map.name == "energy_exceedance")
-        EXPECT_EQ(title_of(raster, run).find("with rotation") != std::string::npos, with);
+        EXPECT_EQ(raster.map.title.find("with rotation") != std::string::npos, with);
       else
-        EXPECT_EQ(title_of(raster, run), raster.map.title);
-      for (const Map::Band& band : bands_of(raster, run))
+        EXPECT_EQ(raster.map.title, raster_of(raster.map.name).map.title);
+      for (const Map::Band& band : bands_of(raster, kRun))
         EXPECT_EQ(band.name.find("E with rotation >") != std::string::npos,
                   counted && band.name.find(" > ") != std::string::npos)
             << band.name;

@@ -56,18 +56,25 @@ def title_of(name, folder=None):
         title = tr("title " + name)
         return name.replace("_", " ") if title.startswith("title ") else title
     word = _id_of_design(folder, name) or found[2] if folder and name.startswith("barrier_") else found[2]
-    title = re.sub("<n>|<id>", lambda _: word, tr(found[1]["title"]))
-    return title + tr(", energy with rotation") if folder and found[1].get("counts_energy") and _counts_rotation(folder) else title
+    return _title_in_run(re.sub("<n>|<id>", lambda _: word, tr(found[1]["title"])), found[1], _settings_of(folder))
 
 
-def _counts_rotation(folder):
-    """Whether the run counts the energy with rotation in thresholds and classes, as its record says."""
+def _title_in_run(title, entry, settings):
+    """A title with what the settings of the run say: the lowest threshold, and whether energies count the rotation."""
+    values, unit = settings.get(entry.get("thresholds"), ("", ""))  # "[30, 300]", in ascending order
+    lowest = values.strip("[]").split(",")[0]
+    title = title.replace("<threshold>", f"{lowest} {unit}" if lowest else tr("the lowest threshold"))
+    counts_rotation = settings.get("output.count_rotation", ("", ""))[0] == "true"
+    return title + tr(", energy with rotation") if entry.get("counts_energy") and counts_rotation else title
+
+
+def _settings_of(folder):
+    """(value, unit) of the settings of a run, by their keys; none in a folder without a record."""
     try:
         with open(os.path.join(folder, "run.json"), encoding="utf-8") as file:
-            settings = json.load(file)["settings"]
-        return any(s["key"] == "output.count_rotation" and s["value"] == "true" for s in settings)
+            return {s["key"]: (str(s["value"]), s.get("unit", "")) for s in json.load(file)["settings"]}
     except (OSError, ValueError, KeyError, TypeError):
-        return False
+        return {}
 
 
 def _id_of_design(folder, name):

@@ -8,16 +8,15 @@ namespace talus {
 
 /// The limit of every tested effect, in the order of the test: of the parameter and place that are measured best.
 std::vector<DetectionLimit> detection_limits(const Campaign& campaign, const Axis& axis, const ScoreTest& test,
-                                             std::span<const Candidate> candidates, const DiagnosisRules& rules = {});
+                                             std::span<const Candidate> candidates, const DiagnosisRules& rules);
 
 /// The limits of all parameters of each effect, each at the place where it is measured best.
 std::vector<DetectionLimit> limits_by_parameter(const Campaign& campaign, const Axis& axis, const ScoreTest& test,
-                                                std::span<const Candidate> candidates,
-                                                const DiagnosisRules& rules = {});
+                                                std::span<const Candidate> candidates, const DiagnosisRules& rules);
 
 /// The campaign as it would be if speeds were also measured at `rules.further_screens` lines across its axis, at equal
 /// distances from the release to where the paths end. The speeds themselves have no meaning: it is for limits only.
-Campaign with_further_screens(const Campaign& campaign, const Axis& axis, const DiagnosisRules& rules = {});
+Campaign with_further_screens(const Campaign& campaign, const Axis& axis, const DiagnosisRules& rules);
 
 /// Adds the limits that `further` measurements would give, of the same parameter of each effect.
 ///

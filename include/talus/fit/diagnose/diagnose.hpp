@@ -8,7 +8,7 @@ namespace talus {
 /// `rules.fewest_of_one`.
 ///
 /// @param blocks  number of fitting blocks
-TrialsPerBlock raised_for_few_blocks(TrialsPerBlock trials, std::size_t blocks, const DiagnosisRules& rules = {});
+TrialsPerBlock raised_for_few_blocks(TrialsPerBlock trials, std::size_t blocks, const DiagnosisRules& rules);
 
 /// Finds the effect that explains what a model of the ground alone leaves unexplained in a campaign's fitting rows.
 ///

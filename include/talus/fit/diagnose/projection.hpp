@@ -17,7 +17,7 @@ struct TestedPlace {
 /// Every place of every candidate: alone; neighbouring bands joined; sets of days. The first `base` directions
 /// are those of the base, then come the tested ones of each candidate in turn.
 std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Eigen::Index base, Eigen::Index directions,
-                                   const DiagnosisRules& rules = {});
+                                   const DiagnosisRules& rules);
 
 /// The linear map from scores to the effective score of one place: without the part that the free parameters of the
 /// base explain, by a regression on their scores. The prior of the base is centred where the base is: a ground that its

@@ -31,7 +31,7 @@ using Residual = Eigen::VectorXd;
 class ResidualSpace {
  public:
   /// @param runs  of the model; at least 20 trials of each fitting block. The campaign must outlive this.
-  ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs, const DiagnosisRules& rules = {});
+  ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs, const DiagnosisRules& rules);
 
   const std::vector<Observable>& observables() const { return observables_; }
   const DiagnosisRules& rules() const { return rules_; }

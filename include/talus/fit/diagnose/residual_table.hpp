@@ -39,7 +39,7 @@ const std::vector<Property>& properties();
 /// @param runs  of which `space` was made
 std::vector<ResidualRow> residual_table(const Campaign& campaign, const ResidualSpace& space,
                                         const std::vector<BlockRuns>& runs, const std::vector<bool>& rows,
-                                        const DiagnosisRules& rules = {});
+                                        const DiagnosisRules& rules);
 
 /// Spearman's rank correlation of two lists of equal length; ties share their mean rank.
 double spearman(std::span<const double> a, std::span<const double> b);

@@ -16,7 +16,7 @@ struct ProjectGround {
   int columns, rows;
   std::filesystem::path dem;        ///< absolute; of a DEM that is no plain file, or not there, no hillshade is drawn
   std::vector<InputFile> inputs{};  ///< of the run; the sources and barriers among them are drawn, where they can be
-  bool count_rotation = false;      ///< the run counts the energy with rotation
+  std::vector<Setting> settings{};  ///< of the run; titles name some of them
 };
 ProjectGround ground_of(const LoadedScenario& loaded);
 
@@ -34,15 +34,17 @@ std::string project_of(const std::vector<std::string>& files, const std::filesys
 /// @return false if QGIS has saved it since: then it stays as the user has left it
 bool refresh_project(const std::filesystem::path& folder);
 
-/// A result in the group. "<n>" is a number and "<id>" an id, the same in both texts.
+/// A result in the group. "<n>" is a number and "<id>" an id, the same in both texts; "<threshold>" is in the title
+/// only.
 struct ProjectLayer {
   std::string file;            ///< "return_period_<n>.tif"; ".gpkg" is also ".fgb"; ".csv" is a table
   std::string title;           ///< "Return period of more than <n> kJ"
   bool shown = false;          ///< at first; of the maps only one: the hazard class, if there is one
   bool counts_energy = false;  ///< its title says so where the run counts the energy with rotation
+  std::string thresholds{};    ///< setting of the run, whose lowest number <threshold> is: "output.energy_thresholds"
 };
-/// The end of such a title.
-inline constexpr const char* kWithRotation = ", energy with rotation";
+/// What <threshold> is where the record of the run does not say it.
+inline constexpr const char* kUnknownThreshold = "the lowest threshold";
 /// From the top of the group downwards.
 const std::vector<ProjectLayer>& project_layers();
 

@@ -1,11 +1,10 @@
 #pragma once
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "talus/base/open_file.hpp"
 #include "talus/io/origin/origin.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/simulate/screens/screens.hpp"
@@ -27,15 +26,12 @@ class CrossingsWriter {
   void finish();
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   [[noreturn]] void fail() const;
   void put(const std::string& text);
 
   std::string name_;  // name of the file
   bool pieces_;       // blocks may break
-  std::unique_ptr<std::FILE, Close> file_;
+  BufferedFile file_;
   std::vector<std::string> screens_;  // ids of the screens as written in the file
   MapPlace place_;
 };

@@ -32,7 +32,7 @@ std::vector<BlockRuns> fitting_runs(const Campaign& c, std::uint32_t trials) {
 std::vector<std::string> described(const Campaign& c) {
   std::vector<std::string> list;
   const auto runs = fitting_runs(c, 20);
-  for (const Candidate& candidate : candidates_of(c, model_of_slope(), runs, {})) {
+  for (const Candidate& candidate : candidates_of(c, model_of_slope(), runs, {}, {})) {
     Model m = with(model_of_slope(), candidate, Eigen::VectorXd::Ones(std::ssize(candidate.parameters)));
     list.push_back(candidate.effect + ' ' + candidate.where + ' ' + std::to_string(candidate.from));
     if (!m.barriers.empty()) list.back() += ' ' + std::to_string(m.barriers[0].lines[0][0].x());
@@ -58,7 +58,7 @@ TEST(Candidates, HangOnNothingThatWasHeldOut) {
     b.samples.clear();
   }
   EXPECT_EQ(described(c), before);
-  const ResidualSpace space(c, fitting_runs(c, 20));
+  const ResidualSpace space(c, fitting_runs(c, 20), {});
   for (const Observable& o : space.observables()) {
     EXPECT_NE(o.name, "mass") << "only held-out blocks broke";
     EXPECT_NE(o.name, "crossed S2") << "only held-out blocks crossed it";
@@ -68,7 +68,7 @@ TEST(Candidates, HangOnNothingThatWasHeldOut) {
 TEST(Candidates, ADayThatIsNotGivenIsNoDay) {
   Campaign c = measured_campaign();
   for (std::size_t b = 0; b < c.blocks.size(); b += 3) c.blocks[b].day = 0;
-  for (const Candidate& candidate : candidates_of(c, model_of_slope(), fitting_runs(c, 20), {}))
+  for (const Candidate& candidate : candidates_of(c, model_of_slope(), fitting_runs(c, 20), {}, {}))
     EXPECT_NE(candidate.where, "day 0");
 }
 
@@ -77,7 +77,7 @@ TEST(Candidates, StayWithinTheBoundsOfTheRegistry) {
   Campaign c = measured_campaign();
   for (MeasuredBlock& b : c.blocks) b.mass = 5000.0, b.axes = {3.0, 2.0, 1.0};
   std::set<std::string> seen;
-  for (const Candidate& candidate : candidates_of(c, model_of_slope(), fitting_runs(c, 20), {}))
+  for (const Candidate& candidate : candidates_of(c, model_of_slope(), fitting_runs(c, 20), {}, {}))
     for (std::size_t i = 0; i < candidate.parameters.size(); ++i)
       for (const double value : {candidate.parameters[i].lower, candidate.parameters[i].upper, 1e-9}) {
         Model m = model_of_slope();
@@ -100,7 +100,7 @@ TEST(Candidates, SearchInMultiplesOfTheMedianBlock) {
     for (MeasuredBlock& b : c.blocks) b.mass = b.holdout ? 1e5 : mass;
     c.blocks[1].mass *= 10.0;  // the median does not see it
     int found = 0;
-    for (const Candidate& candidate : candidates_of(c, model_of_slope(), fitting_runs(c, 20), {}))
+    for (const Candidate& candidate : candidates_of(c, model_of_slope(), fitting_runs(c, 20), {}, {}))
       for (const Parameter& p : candidate.parameters)
         if (p.key == "effects.vegetation-drag.coefficient") {
           ++found;
@@ -119,7 +119,7 @@ TEST(Candidates, StandInTheOrderOfTheirTurns) {
                                        "air-drag",        "block-shape",     "block-mass",      "wet-ground",
                                        "fragmentation",   "instrument-bias", "undeclared-zone", "undeclared-barrier"};
   std::vector<std::string> names;
-  for (const Candidate& candidate : candidates_of(c, model_of_slope(), fitting_runs(c, 20), {}))
+  for (const Candidate& candidate : candidates_of(c, model_of_slope(), fitting_runs(c, 20), {}, {}))
     if (std::ranges::find(order, candidate.effect) != order.end() &&
         (names.empty() || names.back() != candidate.effect))
       names.push_back(candidate.effect);
@@ -133,7 +133,7 @@ TEST(Residual, OfATrialHasTheGapsOfItsBlock) {
   c.blocks[3].passages[0].reset();  // did not cross; all quantities of a trial that does count as measured
   for (MeasuredBlock& b : c.blocks) b.samples[0].spin = kNotGiven;
   const auto runs = fitting_runs(c, 40);
-  const ResidualSpace space(c, runs);
+  const ResidualSpace space(c, runs, {});
   std::vector<std::string> names;
   for (const Observable& o : space.observables()) names.push_back(o.name);
   const auto at = [&names](const std::string& name) {
@@ -162,7 +162,7 @@ TEST(Candidates, OffChangesNoBit) {
   measure(c, model, 3);
   for (MeasuredBlock& b : c.blocks) b.samples.push_back({b.x, b.y - 20.0, 0.0, 20.0, 8.0, 9.0});
   const auto runs = observe(c, model, {20, 1, 0, 0, {}, {}});
-  const auto list = candidates_of(c, model, runs, {});
+  const auto list = candidates_of(c, model, runs, {}, {});
   ASSERT_GT(list.size(), 20U);
   for (const Candidate& candidate : list) {
     Model off = with(model, candidate, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(candidate.parameters.size())));

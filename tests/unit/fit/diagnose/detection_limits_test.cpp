@@ -24,7 +24,7 @@ ScoreTest test_with_error(double standard_error) {
 
 TEST(DetectionLimits, AreFourAndAHalfStandardErrors) {
   const std::vector<Candidate> candidates{drag()};
-  const auto limits = detection_limits(Campaign{}, Axis{}, test_with_error(1.0), candidates);
+  const auto limits = detection_limits(Campaign{}, Axis{}, test_with_error(1.0), candidates, {});
   ASSERT_EQ(limits.size(), 1U);
   EXPECT_DOUBLE_EQ(limits[0].off, 0.0);
   EXPECT_DOUBLE_EQ(limits[0].amount, 0.9);  // 4.5 x 0.2
@@ -32,8 +32,8 @@ TEST(DetectionLimits, AreFourAndAHalfStandardErrors) {
 
 TEST(DetectionLimits, BeyondItsBoundsAnEffectIsNotSeen) {
   const std::vector<Candidate> candidates{drag()};
-  EXPECT_DOUBLE_EQ(detection_limits(Campaign{}, Axis{}, test_with_error(2.0), candidates)[0].amount, 1.8);
-  EXPECT_TRUE(std::isnan(detection_limits(Campaign{}, Axis{}, test_with_error(2.3), candidates)[0].amount));
+  EXPECT_DOUBLE_EQ(detection_limits(Campaign{}, Axis{}, test_with_error(2.0), candidates, {})[0].amount, 1.8);
+  EXPECT_TRUE(std::isnan(detection_limits(Campaign{}, Axis{}, test_with_error(2.3), candidates, {})[0].amount));
 }
 
 /// The number that is measured best would have to go beyond its bounds: the other one shows the effect.
@@ -44,7 +44,7 @@ TEST(DetectionLimits, AreOfAParameterThatCanShowTheEffect) {
   two.tested = 2;
   ScoreTest test;
   test.effects.push_back({"air-drag", {}, {}, 1.0, {}, {{"damping", {{0}, 0, 1.0}}, {"drag", {{0}, 1, 1.1}}}});
-  const auto limits = detection_limits(Campaign{}, Axis{}, test, std::vector<Candidate>{two});
+  const auto limits = detection_limits(Campaign{}, Axis{}, test, std::vector<Candidate>{two}, {});
   ASSERT_EQ(limits.size(), 1U);
   EXPECT_EQ(limits[0].key, "drag");
   EXPECT_DOUBLE_EQ(limits[0].amount, 0.99);
@@ -57,7 +57,7 @@ TEST(DetectionLimits, AreGivenForEachPlace) {
   ScoreTest test = test_with_error(1.0);
   test.effects[0].sharpest = {{"drag", {{1}, 0, 0.5}}};
   test.effects[0].places = {{{0}, 0, 1.0}, {{1}, 0, 0.5}};
-  std::vector<DetectionLimit> limits = detection_limits(Campaign{}, Axis{}, test, candidates);
+  std::vector<DetectionLimit> limits = detection_limits(Campaign{}, Axis{}, test, candidates, {});
   ASSERT_EQ(limits.size(), 1U);
   EXPECT_DOUBLE_EQ(limits[0].amount, 0.45);
   ASSERT_EQ(limits[0].places.size(), 2U);
@@ -86,9 +86,9 @@ TEST(DetectionLimits, CompareTheSameParameter) {
   two.tested = 2;
   ScoreTest test;
   test.effects.push_back({"air-drag", {}, {}, 1.0, {}, {{"softening", {{0}, 0, 1.0}}, {"drag", {{0}, 1, 2.0}}}});
-  std::vector<DetectionLimit> limits = detection_limits(Campaign{}, Axis{}, test, std::vector<Candidate>{two});
+  std::vector<DetectionLimit> limits = detection_limits(Campaign{}, Axis{}, test, std::vector<Candidate>{two}, {});
   test.effects[0].sharpest = {{"softening", {{0}, 0, 0.5}}, {"drag", {{0}, 1, 0.25}}};
-  compare_limits(limits, limits_by_parameter(Campaign{}, Axis{}, test, std::vector<Candidate>{two}));
+  compare_limits(limits, limits_by_parameter(Campaign{}, Axis{}, test, std::vector<Candidate>{two}, {}));
   ASSERT_EQ(limits.size(), 1U);
   EXPECT_EQ(limits[0].key, "softening");
   EXPECT_DOUBLE_EQ(limits[0].amount, 0.9);
@@ -170,7 +170,7 @@ TEST(FurtherScreens, HaveNoBiasAndTheSamplesKeepTheirs) {
   Model biased = plain;
   biased.bias.resize(1);
   biased.bias[kSampler].speed = -0.2;
-  const Campaign more = with_further_screens(campaign, {{60.0, 190.0}, {0.0, -1.0}, 0.0, 150.0});
+  const Campaign more = with_further_screens(campaign, {{60.0, 190.0}, {0.0, -1.0}, 0.0, 150.0}, {});
   const auto without = observe(more, plain, {20, 1, 0, 1, {}, {}}), with = observe(more, biased, {20, 1, 0, 1, {}, {}});
   double seen = 0.0, crossed = 0.0;
   for (std::size_t b = 0; b < with.size(); ++b)
@@ -201,7 +201,7 @@ TEST(FurtherScreens, RaiseNoLimit) {
   const ObserveOptions unseen{100, 7, 1000, 0, {}, {}};
   const auto runs = observe(campaign, model, unseen);
   const Axis axis = axis_of(campaign, runs);
-  const auto list = candidates_of(campaign, model, runs, {});
+  const auto list = candidates_of(campaign, model, runs, {}, {});
   const auto free = ground_parameters(campaign, model, std::vector<std::string>{"theta_scale", "En50"}, {true});
   const Eigen::VectorXd z = Eigen::VectorXd::Zero(2);
   ScoreTestOptions how;
@@ -210,9 +210,9 @@ TEST(FurtherScreens, RaiseNoLimit) {
   const auto tested = [&](const Campaign& c) {
     return score_test(c, {model, free, z, observe(c, model, unseen)}, list, rows, how);
   };
-  const Campaign more = with_further_screens(campaign, axis);
-  std::vector<DetectionLimit> limits = detection_limits(campaign, axis, tested(campaign), list);
-  compare_limits(limits, limits_by_parameter(more, axis, tested(more), list));
+  const Campaign more = with_further_screens(campaign, axis, {});
+  std::vector<DetectionLimit> limits = detection_limits(campaign, axis, tested(campaign), list, {});
+  compare_limits(limits, limits_by_parameter(more, axis, tested(more), list, {}));
   int finite = 0;
   for (const DetectionLimit& limit : limits) {
     if (std::isnan(limit.amount)) continue;

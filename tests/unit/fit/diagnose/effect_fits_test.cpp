@@ -14,16 +14,16 @@ namespace talus::test {
 namespace {
 
 TEST(Trials, AreSharedOutAmongFewBlocks) {
-  const TrialsPerBlock many = raised_for_few_blocks({24, 100, 200}, 144);
+  const TrialsPerBlock many = raised_for_few_blocks({24, 100, 200}, 144, {});
   EXPECT_EQ(many.search, 24U);  // never fewer than was asked for
   EXPECT_EQ(many.test, 100U);
   EXPECT_EQ(many.compare, 200U);
-  const TrialsPerBlock third = raised_for_few_blocks({24, 100, 200}, 24);  // 72 / 24 = 3 times as many
+  const TrialsPerBlock third = raised_for_few_blocks({24, 100, 200}, 24, {});  // 72 / 24 = 3 times as many
   EXPECT_EQ(third.search, 72U);
   EXPECT_EQ(third.test, 300U);
   EXPECT_EQ(third.compare, 600U);
-  EXPECT_EQ(raised_for_few_blocks({24, 100, 200}, 5).search, 96U) << "four times at most";
-  EXPECT_EQ(raised_for_few_blocks({10, 100, 200}, 144).search, 20U) << "never fewer than a score needs";
+  EXPECT_EQ(raised_for_few_blocks({24, 100, 200}, 5, {}).search, 96U) << "four times at most";
+  EXPECT_EQ(raised_for_few_blocks({10, 100, 200}, 144, {}).search, 20U) << "never fewer than a score needs";
 }
 
 TEST(EffectFits, ALongerFitIsTakenWhereItIsBetterAndTeachesWhereItIsNot) {
@@ -233,7 +233,7 @@ TEST(EffectFits, WhatOnlyHarmsIsNotFitted) {
   const Campaign& campaign = slope.campaign;
   EffectFits fits(campaign, slope.options, slope.rows, [](double) { return true; });
   const FittedModel base = fits.begin_round(fits.fit_ground(model_of_slope()));
-  const auto list = candidates_of(campaign, base.model, base.runs, {});
+  const auto list = candidates_of(campaign, base.model, base.runs, {}, {});
   const auto drag = std::ranges::find(list, "vegetation-drag", &Candidate::effect);
   ASSERT_NE(drag, list.end());
   EffectVerdict verdict;

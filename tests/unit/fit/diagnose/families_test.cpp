@@ -34,7 +34,7 @@ const Measured& measured() {
 
 TEST(EnergyComponent, OfTheModelsOwnTrialsHasMeanZeroAndVarianceOne) {
   const Measured& m = measured();
-  const ResidualSpace space(m.campaign, m.runs);
+  const ResidualSpace space(m.campaign, m.runs, {});
   const EnergyComponent energy(space, m.runs);
   double sum = 0.0, squares = 0.0, count = 0.0;
   for (std::size_t b = 0; b < m.runs.size(); ++b)
@@ -52,7 +52,7 @@ TEST(EnergyComponent, OfTheRunoutAloneIsItsZ) {
   c.screens.clear();
   for (MeasuredBlock& b : c.blocks) b.passages.clear();
   const auto runs = observe(c, model_of_slope(), {100, 1, 0, 0, {}, {}});
-  const ResidualSpace space(c, runs);
+  const ResidualSpace space(c, runs, {});
   const EnergyComponent energy(space, runs);
   double squares = 0.0, count = 0.0;  // the scale: z of many ties or few values is not quite of variance one
   for (std::size_t b = 0; b < runs.size(); ++b)
@@ -68,13 +68,13 @@ TEST(EnergyComponent, OfTheRunoutAloneIsItsZ) {
 
 TEST(EnergyComponent, FasterAtTheScreenIsMoreEnergy) {
   Campaign c = measured().campaign;
-  const ResidualSpace before(c, measured().runs);
+  const ResidualSpace before(c, measured().runs, {});
   const EnergyComponent energy_before(before, measured().runs);
   std::size_t crossed = 0;
   while (!c.blocks[crossed].passages[0]) ++crossed;
   const double as_measured = energy_before.of_measured(crossed);
   c.blocks[crossed].passages[0]->speed *= 1.5;
-  EXPECT_GT(EnergyComponent(ResidualSpace(c, measured().runs), measured().runs).of_measured(crossed), as_measured);
+  EXPECT_GT(EnergyComponent(ResidualSpace(c, measured().runs, {}), measured().runs).of_measured(crossed), as_measured);
 }
 
 /// Moves every stop away from the mean stop of the block's trials, or towards it.
@@ -93,7 +93,7 @@ Campaign scattered(const Measured& m, double factor) {
 
 /// The test of the dispersion of all blocks, with data sets of the model's own trials.
 DispersionTest dispersion_of(const Campaign& c, const std::vector<BlockRuns>& runs, int sets, std::uint64_t seed) {
-  const ResidualSpace space(c, runs);
+  const ResidualSpace space(c, runs, {});
   std::vector<std::size_t> blocks(c.blocks.size());
   std::iota(blocks.begin(), blocks.end(), 0U);
   Eigen::MatrixXd measured(space.size(), std::ssize(blocks)), drawn = measured;
@@ -155,7 +155,7 @@ TEST(Families, EveryEffectIsInOne) {
   Campaign c = measured().campaign;
   for (MeasuredBlock& b : c.blocks) b.axes = {3.0, 2.0, 1.0}, b.day = 1 + (b.id.size() > 2 ? 1 : 0);
   std::map<std::string, std::set<std::string>> members;
-  for (const Candidate& candidate : candidates_of(c, model_of_slope(), measured().runs, {}))
+  for (const Candidate& candidate : candidates_of(c, model_of_slope(), measured().runs, {}, {}))
     members[family_of(candidate.effect)].insert(candidate.effect);
   EXPECT_EQ(members["block property"], (std::set<std::string>{"block-mass", "block-shape"}));
   EXPECT_EQ(members["day"], (std::set<std::string>{"wet-ground"}));
@@ -176,7 +176,7 @@ std::vector<FamilyTest> families_of(const Campaign& c, const std::vector<BlockRu
   score.effects = {{"soft-ground", {{0}, {}, {}, 9.0, 0.001}, {}, 0.05, drawn},
                    {"air-drag", {{1}, {}, {}, 1.0, 0.5}, {}, 0.5, drawn}};
   score.dispersion = dispersion_of(c, runs, 200, 1);
-  const ResidualSpace space(c, runs);
+  const ResidualSpace space(c, runs, {});
   FamilyOptions how;
   how.replicates = 200;
   how.rules.arrangements = 1000;

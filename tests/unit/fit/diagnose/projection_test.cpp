@@ -104,7 +104,7 @@ TEST(Projection, EverySetOfFewDaysAndRunsOfMany) {
   const auto places = [](std::size_t days) {
     std::vector<Candidate> list(days);
     for (Candidate& c : list) c = {"wet-ground", "", {{}}, 1, {}};
-    return places_of(list, 0, static_cast<Eigen::Index>(days)).size();
+    return places_of(list, 0, static_cast<Eigen::Index>(days), {}).size();
   };
   EXPECT_EQ(places(3), 6U);   // 2^3 - 2
   EXPECT_EQ(places(6), 62U);  // 2^6 - 2

@@ -42,7 +42,7 @@ TEST(Residual, OfABlockLeftOfTheMeanStopIsPositive) {
     for (const double side : {1.0, -1.0}) {
       Campaign c = one_block();
       c.blocks[0].stop = 100.0 * forward + side * 20.0 * left;
-      EXPECT_NEAR(component(ResidualSpace(c, {runs}), "lateral", false), side * kZAbove, 1e-6) << towards;
+      EXPECT_NEAR(component(ResidualSpace(c, {runs}, {}), "lateral", false), side * kZAbove, 1e-6) << towards;
     }
   }
 }
@@ -61,7 +61,7 @@ TEST(Residual, OfASampleBelongsToItsHalfOfThePath) {
     for (int t = 1; t <= kTrials; ++t) sample.speed.push_back(t);
     sample.spin.assign(kTrials, kNotGiven);
   }
-  const ResidualSpace space(c, {runs});
+  const ResidualSpace space(c, {runs}, {});
   EXPECT_NEAR(component(space, "sample speed early", false), 0.0, 1e-12);
   EXPECT_NEAR(component(space, "sample speed early", true), -0.707107, 1e-6);
   EXPECT_NEAR(component(space, "sample speed late", false), kZAbove, 1e-6);
