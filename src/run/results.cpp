@@ -174,10 +174,7 @@ StopFigures write_maps_and_vectors(const ResultSource& source, const Observer& o
 }  // namespace
 
 void say_later_results(const io::OutputFolder& folder, Observer& observer) {
-  const std::vector<std::string> lost = folder.later_results();
-  if (!lost.empty())
-    observer.message("note: --overwrite will also remove what later commands have written into " +
-                     folder.final_path().string() + ": " + listed(lost));
+  if (const std::string note = folder.later_results_note(); !note.empty()) observer.message(note);
 }
 
 void write_results(const ResultSource& source, Observer& observer, Stopwatch& watch, io::RunRecord& record) {

@@ -11,7 +11,7 @@ import unittest
 
 import numpy as np
 
-from support import TALUS, WEST, Case, box, heights, write_dem, write_features
+from support import NORTH, TALUS, WEST, Case, box, heights, write_dem, write_features
 
 
 class CommandLine(Case):
@@ -174,6 +174,24 @@ class Folder(Case):
         self.assertTrue(os.path.exists(self.path("out/diary.txt")))
         self.write("file", "")
         self.fails(2, "is a file", arguments=[*self.arguments("file"), "--overwrite"])
+
+    def test_results_of_another_command_are_not_overwritten(self):  # a run of hours was, without a word
+        commands = {"run": self.arguments()[:-1]}
+        commands["profile"] = ["profile", *commands["run"][1:3], "--line", self.path("line.gpkg"), "--source-x", "5",
+                               "--diameter", "0.8", "--trajectories", "5", "-o"]
+        write_features(self.path("line.gpkg"), "line", [(f"LINESTRING ({WEST + 150} {NORTH - 20},{WEST + 150} {NORTH - 280})", [])])
+        for command, arguments in commands.items():
+            self.run_well(*arguments, self.path(command), "-q")
+            self.run_well(*arguments, self.path(command), "-q", "--overwrite")
+        for command, other in (("run", "profile"), ("profile", "run")):
+            before = sorted(os.listdir(self.path(other)))
+            self.fails(2, f"{other}: holds results of talus {other}, and --overwrite replaces only those of talus {command};",
+                       arguments=[*commands[command], self.path(other), "--overwrite"])
+            self.assertEqual(sorted(os.listdir(self.path(other))), before)
+        for command, mark in (("calibrate", "calibration.json"), ("diagnose", "diagnosis.json")):
+            os.mkdir(self.path(command))
+            self.write(f"{command}/{mark}", "{}")
+            self.fails(2, f"holds results of talus {command},", arguments=[*commands["run"], self.path(command), "--overwrite"])
 
     def test_an_input_in_the_folder_is_not_deleted(self):
         self.run_well(*self.arguments())

@@ -23,13 +23,22 @@ class Diagnose(Case):
         self.assertFalse(os.path.exists(self.path("out")))
 
     def test_the_start_is_not_replaced_by_the_results(self):
-        os.makedirs(self.path("out"))
-        start = self.write("out/fitted.toml", '[ground]\ndefault = "upper-talus-3d"\n')
-        self.write("out/diagnosis.json", "{}")
-        for command in ("diagnose", "calibrate"):
-            self.fails(2, "out/fitted.toml", arguments=(
-                command, f"{ELM}/campaign.toml", "--parameters", start, "-o", self.path("out"), "--overwrite"))
-        self.assertTrue(os.path.exists(start))
+        for command, record in (("diagnose", "diagnosis.json"), ("calibrate", "calibration.json")):
+            os.makedirs(self.path(command))
+            start = self.write(command + "/fitted.toml", '[ground]\ndefault = "upper-talus-3d"\n')
+            self.write(f"{command}/{record}", "{}")
+            self.fails(2, command + "/fitted.toml", arguments=(
+                command, f"{ELM}/campaign.toml", "--parameters", start, "-o", self.path(command), "--overwrite"))
+            self.assertTrue(os.path.exists(start))
+
+    def test_results_of_another_command_are_not_replaced(self):
+        for record in ("diagnosis.json", "calibration.json", "run.json"):
+            os.makedirs(self.path(record[:-5]))
+            self.write(f"{record[:-5]}/{record}", "{}")
+        for command, others in (("diagnose", {"calibration": "calibrate", "run": "run"}), ("calibrate", {"diagnosis": "diagnose", "run": "run"})):
+            for folder, other in others.items():
+                self.fails(2, f"holds results of talus {other}, and --overwrite replaces only those of talus {command};",
+                           arguments=(command, f"{ELM}/campaign.toml", "-o", self.path(folder), "--overwrite"))
 
     def test_a_start_at_zero_is_refused(self):  # it was fitted from 0.01
         self.write("start.toml", '[ground.zones.default]\npreset = "upper-talus-3d"\npsi_scale = 0\n')

@@ -442,13 +442,16 @@ class Shapefiles(InputCase):
         with open(self.path("d.hdr"), "a", encoding="utf-8") as file:
             file.write("file compression = 0\n")
         self.run_well("check", "--dem", self.path("d.img"), "--sources", self.path("c.shp"))
+        gdal.Translate(self.path("d.map"), self.path("dem.tif"), format="PCRaster")
+        self.run_well("check", "--dem", self.path("d.map"), "--sources", self.path("c.shp"))
         for name, said in (("c.shp", "is cut off, must have "), ("c.mif", "has 2 shapes, and its .mid has 3 rows"),
-                           ("c.geojsonl", "cannot be read as a whole: "), ("d.img", "is cut off, must have ")):
+                           ("c.geojsonl", "cannot be read as a whole: "), ("d.img", "is cut off, must have "),
+                           ("d.map", "is cut off, must have 14656 bytes")):  # 256 and 60 x 60 x 4
             with open(self.path(name), "rb") as file:
                 whole = file.read()
             with open(self.path(name), "wb") as file:
                 file.write(whole[:whole.rindex(b"Region") if name == "c.mif" else len(whole) * 9 // 10])
-            dem, sources = ("d.img", "c.gpkg") if name == "d.img" else ("dem.tif", name)
+            dem, sources = (name, "c.gpkg") if name.startswith("d.") else ("dem.tif", name)
             self.fails(2, f"{name}: {said}", arguments=["check", "--dem", self.path(dem), "--sources", self.path(sources), "--diameter", "1"])
             if name == "c.shp":
                 with open(self.path(name), "wb") as file:
@@ -571,6 +574,75 @@ class Overwrite(InputCase):
         self.fails(2, "mine.gpkg", "other layers: houses", arguments=[*arguments, self.path("mine.gpkg")])
         self.run_well(*arguments, self.path("cells.gpkg"))
         self.run_well(*arguments, self.path("cells.gpkg"))
+
+
+class AsciiGrids(InputCase):
+    """A header of six lines, then 60 rows of 60 heights."""
+
+    def setUp(self):
+        super().setUp()
+        write_dem(self.path("dem.tif"), np.round(heights()) + 0.5, nodata=-9999.0)
+        gdal.Translate(self.path("d.asc"), self.path("dem.tif"), format="AAIGrid")
+        self.lines = self.read_text("d.asc").splitlines()
+        self.assertEqual(len(self.lines), 6 + 60)
+
+    def with_word(self, word):
+        """The grid with another word for a height in its 30th line."""
+        words = self.lines[29].split()
+        words[20] = word
+        return self.lines[:29] + [" ".join(words)] + self.lines[30:]
+
+    def test_what_is_read(self):
+        def terrain(dem):
+            lines = self.run_well("check", *self.flags(dem=dem)).stdout.splitlines()
+            return [line for line in lines if line.startswith(("terrain", "extent", "slopes"))]
+        self.assertEqual(len(terrain("d.asc")), 3)
+        for lines in (self.lines, [line.replace(".", ",") for line in self.lines], self.lines[:6] + [" ".join(self.lines[6:])],
+                      [line + "\r" for line in self.lines], [*self.lines, "  ", ""]):
+            self.write("d.asc", "\n".join(lines) + "\n")
+            self.assertEqual(terrain("d.asc"), terrain("dem.tif"))
+        for word in ("nan", "+1e3", "1.#QNAN", "1000,5"):
+            self.write("d.asc", "\n".join(self.with_word(word)))
+            self.run_well("check", *self.flags(dem="d.asc"))
+
+    def test_other_numbers_than_the_header_says(self):  # the map lay too far south, or all after a gap was shifted
+        cut = self.lines[-1][:len(self.lines[-1]) // 2 + 1]
+        few = [line.replace("nrows        60", "nrows        50") for line in self.lines]
+        for lines, numbers, rows in ((self.lines[:-1], 3540, 60), (self.lines[:20] + self.lines[21:], 3540, 60),
+                                     ([*self.lines, self.lines[-1]], 3660, 60), (few, 3600, 50),
+                                     (self.with_word(""), 3599, 60), (self.with_word("1000 .5"), 3601, 60),
+                                     ([*self.lines[:-1], cut], 3540 + len(cut.split()), 60)):
+            self.write("d.asc", "\n".join(lines) + "\n")
+            self.refused(f"d.asc: has {numbers} numbers, its header says 60 columns x {rows} rows", "copy it again", dem="d.asc")
+
+    def test_words(self):  # each was the height 0, or that of its first digits
+        for word in ("x1000", "n/a", "1'000.5", "12.3.4", "1e", "1000m", "-", "1,000.5"):
+            self.write("d.asc", "\n".join(self.with_word(word)))
+            self.refused(f"d.asc:30: '{word}' is no number, must be one, or the NODATA_value", dem="d.asc")
+
+    def test_zones(self):
+        write_dem(self.path("zones.tif"), np.ones((60, 60)))
+        gdal.Translate(self.path("zones.asc"), self.path("zones.tif"), format="AAIGrid", outputType=gdal.GDT_Int32)
+        self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1.2\n'
+                             '[ground]\nfile = "zones.asc"\n[ground.zones.1]\npreset = "forest-road-3d"\n')
+        self.run_well("check", self.path("s.toml"))
+        self.write("zones.asc", "\n".join(self.read_text("zones.asc").splitlines()[:-10]))
+        self.fails(2, "zones.asc: has 3000 numbers, its header says 60 columns x 60 rows", arguments=["check", self.path("s.toml")])
+
+
+class Heights(InputCase):
+    def test_heights_of_sources_are_said_not_to_be_read(self):
+        x, y = WEST + 150, NORTH - 60
+        for shapes, said in ((["POINT Z ({x} {y} 1500)", "LINESTRING Z ({x} {y} 0,{x} {south} 3)", "POINT ({x} {y})"], "2 of 3 features"),
+                             (["POLYGON Z (({x} {y} 9,{x} {south} 9,{east} {south} 9,{x} {y} 9))"], "1 of 1 features"),
+                             (["POINT Z ({x} {y} 0)", "POINT M ({x} {y} 5)"], "")):
+            write_features(self.path("sources.gpkg"), "sources",
+                           [(shape.format(x=x, y=y, south=y - 20, east=x + 20), []) for shape in shapes])
+            plan = self.run_well("check", *self.flags()).stdout
+            self.assertEqual("(Z)" in plan, said != "", plan)
+            if said:
+                self.assertIn(f"sources.gpkg: the height (Z) of {said} is not read: blocks start above the DEM", plan)
+                self.assertEqual(self.run_flags("--overwrite", out="z").stderr.count(f"the height (Z) of {said} is not read"), 1)
 
 
 class OffTheDem(InputCase):

@@ -484,6 +484,20 @@ class Products(Profile):
         half = next(to for to, share in beyond if share <= 0.5)
         self.assertIn(f"<td class='n'>50 %</td><td class='n'>{half:.4g}</td>", page)
 
+    def test_a_table_of_another_run(self):  # the page had no table, or that of the other run
+        self.profile("--trajectories", "100", out="profile")
+        table = self.read_text("profile/runout.csv")
+        stayed = sum(int(row["stopped"]) for row in self.read_table("profile/runout.csv"))
+        self.profile("--trajectories", "50", out="other")
+        for text in (table.splitlines()[0] + "\n", self.read_text("other/runout.csv")):
+            self.write("profile/runout.csv", text)
+            self.fails(2, "runout.csv: has ", f" blocks that stopped, run.json beside it says {stayed}:", "run the profile again",
+                       arguments=["report", self.path("profile")])
+        self.write("profile/runout.csv", table)
+        self.run_well("report", self.path("profile"))
+        said = self.run_well("profile", self.path("p.toml"), "-o", self.path("profile"), "--trajectories", "5", "--overwrite").stderr
+        self.assertIn("note: --overwrite will also remove what later commands have written", said)
+
     def test_flags_that_notes_name_are_of_the_command_that_made_the_folder(self):
         line = f"LINESTRING ({WEST + 20} {NORTH - 180}, {WEST + 280} {NORTH - 180})"
         write_features(self.path("screens.gpkg"), "screens", [(line, ["100"])], [("id", ogr.OFTString)])

@@ -319,6 +319,15 @@ class Content(Report):
         self.assertIn("0.634", text)
         self.assertNotIn("the ground alone", text)
 
+    def test_ends_that_are_not_those_of_the_released_blocks(self):  # a record that was edited was shown
+        self.run_scenario("out")
+        record = self.read_json("out/run.json")
+        record["ends"]["stopped"] += 1
+        self.write("out/run.json", json.dumps(record))
+        released = record["released"]
+        self.fails(2, f"run.json: cannot be understood (it has {released} released blocks, and ends of {released + 1})",
+                   arguments=["report", self.path("out")])
+
     def test_hazard_of_a_run_of_several_rounds_is_that_of_the_run(self):
         self.run_scenario("out", "--rounds", "2")
         self.run_well("hazard", self.path("out"), "-q")

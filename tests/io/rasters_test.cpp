@@ -77,11 +77,11 @@ TEST_F(Terrains, ZerosAmongMountainsAreSuspect) {
   std::vector<double> values(80, 700.0);
   values[0] = 0.0;
   EXPECT_TRUE(
-      said(read_terrain(RasterFile{.values = values}.write(path("dem.tif"))).warnings, "1 cells have the height 0"));
+      said(read_terrain(RasterFile{.values = values}.write(path("dem.tif"))).warnings, "1 cell has the height 0"));
   EXPECT_TRUE(read_terrain(RasterFile{.values = values, .nodata = 0.0}.write(path("b.tif"))).warnings.empty());
   for (std::size_t i = 1; i < values.size(); ++i) values[i] -= 900.0;  // a pit below the sea
   EXPECT_TRUE(said(read_terrain(RasterFile{.values = values}.write(path("c.tif"))).warnings,
-                   "1 cells have the height 0 and all others less than -200 m"));
+                   "1 cell has the height 0 and all others less than -200 m"));
 }
 
 TEST_F(Terrains, HeightsFarFromAllOthersAreSuspect) {

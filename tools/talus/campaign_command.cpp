@@ -29,6 +29,7 @@ void require_releases(const std::string& path, const talus::Campaign& campaign) 
 
 void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, int fewest_trials,
                              std::vector<std::string>& keys, std::uint64_t& seed, int& threads) {
+  name = "talus " + command.get_name();
   with(command.add_option("campaign", campaigns, "measured data: campaign.toml; several: docs/several-campaigns.md")
            ->required(),
        file_of({"toml"}));
@@ -75,7 +76,8 @@ void warn_of_scores(const CampaignCommand& command, talus::io::FitRecord& record
 }
 
 OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record)
-    : loaded(std::move(read_campaigns(command).front())), folder(command.out, command.overwrite) {
+    : loaded(std::move(read_campaigns(command).front())),
+      folder(command.out, command.overwrite, talus::io::OutputFolder::Unfinished::Ignore, command.name) {
   for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
   for (const std::string& warning : loaded.warnings) warn(command, record, warning);
   if (command.all_rows)

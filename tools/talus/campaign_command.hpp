@@ -7,13 +7,14 @@
 
 /// Common options of `calibrate` and `diagnose`: a campaign or several, a new folder, the display of progress.
 struct CampaignCommand {
+  std::string name;  ///< "talus calibrate"
   std::vector<std::string> campaigns;
   std::string out, progress;
   std::optional<std::string> surface;
   bool overwrite = false, quiet = false;
   bool all_rows = false;  ///< fit the rows that the campaign holds out, too
 
-  /// Adds the options, those of a search among them.
+  /// Adds the options, those of a search among them, and takes the name of the command.
   void add_to(CLI::App& command, std::uint32_t& trials, int fewest_trials, std::vector<std::string>& keys,
               std::uint64_t& seed, int& threads);
 };

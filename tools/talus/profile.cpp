@@ -140,10 +140,12 @@ int run_profile(const ProfileOptions& options) {
   const LoadedProfile profile = talus::io::load_profile(options.flags);
   catch_signals();
   if (interrupted()) stop_interrupted();
-  talus::io::OutputFolder folder(options.out, options.overwrite);
+  talus::io::OutputFolder folder(options.out, options.overwrite, talus::io::OutputFolder::Unfinished::Ignore,
+                                 "talus profile");
   for (const talus::io::InputFile& input : profile.loaded.inputs)
     if (std::filesystem::path(input.path) != folder.final_path() / "profile.toml") folder.protect(input.path);
   if (!options.quiet) say_of_input(profile.loaded);
+  if (const std::string note = folder.later_results_note(); !options.quiet && !note.empty()) say("", note);
   talus::io::RunRecord record;
   record.command = command_line();
   record.warnings = profile.loaded.warnings;

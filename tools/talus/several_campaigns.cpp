@@ -82,7 +82,9 @@ void reorder(std::vector<T>& list, const std::vector<std::size_t>& order) {
 }  // namespace
 
 OpenedSites::OpenedSites(const CampaignCommand& command, talus::io::FitRecord& record)
-    : paths(command.campaigns), loaded(read_campaigns(command)), folder(command.out, command.overwrite) {
+    : paths(command.campaigns),
+      loaded(read_campaigns(command)),
+      folder(command.out, command.overwrite, talus::io::OutputFolder::Unfinished::Ignore, command.name) {
   for (std::size_t i = 0; i < paths.size(); ++i) require_measurements(paths[i], loaded[i].campaign);
   std::vector<std::string> names = site_names(paths, loaded, record.warnings);
   warn_of_copies(paths, loaded, record.warnings);

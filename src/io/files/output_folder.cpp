@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "folder_lock.hpp"
@@ -60,7 +61,23 @@ void refuse_foreign_files(const fs::path& folder) {
                      "others in this folder: " + listed(foreign) + "; move them, or give a new name");
 }
 
-void refuse_taken_name(const fs::path& folder, bool overwrite) {
+/// The command that has written the results in a folder, by a file that it alone writes.
+std::string command_of_results(const fs::path& folder) {
+  for (const auto& [file, command] : {std::pair{"calibration.json", "talus calibrate"},
+                                      {"diagnosis.json", "talus diagnose"},
+                                      {"profile.toml", "talus profile"}})
+    if (fs::exists(folder / file)) return command;
+  return "talus run";
+}
+
+/// --overwrite with the name of another result by mistake must not cost hours of work.
+void refuse_other_command(const fs::path& folder, const std::string& command) {
+  if (const std::string earlier = command_of_results(folder); earlier != command)
+    throw InputError(folder.string() + ": holds results of " + earlier + ", and --overwrite replaces only those of " +
+                     command + "; give a new name, or remove the folder yourself");
+}
+
+void refuse_taken_name(const fs::path& folder, bool overwrite, const std::string& command) {
   const std::string name = folder.string();
   refuse_dangling_link(folder);
   if (!fs::exists(folder)) return;
@@ -72,7 +89,10 @@ void refuse_taken_name(const fs::path& folder, bool overwrite) {
   if (!overwrite)
     throw InputError(name + ": the folder is there and not empty; give a new name, or --overwrite to replace it");
   for (const char* mark : {"run.json", "part.json", "calibration.json", "diagnosis.json"})
-    if (fs::exists(folder / mark)) return refuse_foreign_files(folder);
+    if (fs::exists(folder / mark)) {
+      refuse_foreign_files(folder);
+      return refuse_other_command(folder, command);
+    }
   throw InputError(name +
                    ": --overwrite replaces only results of talus, and there is no run.json, part.json, "
                    "calibration.json or diagnosis.json in this folder; give a new name, or remove the folder yourself");
@@ -134,12 +154,15 @@ bool is_finished_map(const fs::path& file) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfinished)
-    : staged_(StagedPath::Kind::Folder, full_name(path)), overwrite_(overwrite), lock_(std::make_unique<FolderLock>()) {
+OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfinished, std::string command)
+    : staged_(StagedPath::Kind::Folder, full_name(path)),
+      overwrite_(overwrite),
+      command_(std::move(command)),
+      lock_(std::make_unique<FolderLock>()) {
   const fs::path& final = final_path();
   std::vector<Left> left;
   try {
-    refuse_taken_name(final, overwrite);
+    refuse_taken_name(final, overwrite, command_);
     left = left_of(final);
   } catch (const fs::filesystem_error& error) {
     throw InputError(not_readable_text(final, error) + "; give another folder");
@@ -190,8 +213,11 @@ void OutputFolder::protect(const fs::path& file) const {
   }
 }
 
-std::vector<std::string> OutputFolder::later_results() const {
-  return io::later_results(final_path());
+std::string OutputFolder::later_results_note() const {
+  const std::vector<std::string> lost = later_results(final_path());
+  return lost.empty() ? std::string()
+                      : "note: --overwrite will also remove what later commands have written into " +
+                            final_path().string() + ": " + listed(lost);
 }
 
 void OutputFolder::commit() {
@@ -211,7 +237,7 @@ void OutputFolder::commit(const fs::path& folder) {
   const std::string kept = "; the results are kept in " + temporary().string();
   bool replace = false;
   try {  // another process may have made the folder meanwhile
-    refuse_taken_name(final_path(), overwrite_);
+    refuse_taken_name(final_path(), overwrite_, command_);
     replace = overwrite_ && fs::exists(final_path()) && !fs::is_empty(final_path());
   } catch (const InputError& error) {
     keep_results();

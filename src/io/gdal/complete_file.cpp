@@ -11,19 +11,23 @@
 namespace talus::io {
 namespace {
 
-void check_envi(GDALDataset& dataset, const std::string& path, const std::string& file) {
-  const char* const offset = dataset.GetMetadataItem("header_offset", "ENVI");
+/// Throws InputError if a raster of plain numbers is shorter than these and its header.
+void check_size(GDALDataset& dataset, const std::string& path, const std::string& file, std::uint64_t header) {
   const auto bytes =
       static_cast<std::uint64_t>(GDALGetDataTypeSizeBytes(dataset.GetRasterBand(1)->GetRasterDataType()));
-  const std::uint64_t size = (offset == nullptr ? 0 : std::strtoull(offset, nullptr, 10)) +
-                             bytes * static_cast<std::uint64_t>(dataset.GetRasterXSize()) *
-                                 static_cast<std::uint64_t>(dataset.GetRasterYSize()) *
-                                 static_cast<std::uint64_t>(dataset.GetRasterCount());
+  const std::uint64_t size = header + bytes * static_cast<std::uint64_t>(dataset.GetRasterXSize()) *
+                                          static_cast<std::uint64_t>(dataset.GetRasterYSize()) *
+                                          static_cast<std::uint64_t>(dataset.GetRasterCount());
   VSIStatBufL status;
-  const char* const packed = dataset.GetMetadataItem("file_compression", "ENVI");
-  if (VSIStatL(file.c_str(), &status) != 0 || (packed != nullptr && std::atoi(packed) != 0)) return;
-  if (static_cast<std::uint64_t>(status.st_size) < size)
+  if (VSIStatL(file.c_str(), &status) == 0 && static_cast<std::uint64_t>(status.st_size) < size)
     throw InputError(path + ": is cut off, must have " + std::to_string(size) + " bytes: copy it again");
+}
+
+void check_envi(GDALDataset& dataset, const std::string& path, const std::string& file) {
+  const char* const packed = dataset.GetMetadataItem("file_compression", "ENVI");
+  if (packed != nullptr && std::atoi(packed) != 0) return;
+  const char* const offset = dataset.GetMetadataItem("header_offset", "ENVI");
+  check_size(dataset, path, file, offset == nullptr ? 0 : std::strtoull(offset, nullptr, 10));
 }
 
 /// The lines of a file that hold more than blanks; 0 if there is none.
@@ -57,6 +61,8 @@ void check_mapinfo(GDALDataset& dataset, const std::string& path, const std::str
 void check_complete(GDALDataset& dataset, const std::string& path, const std::string& file, GdalMessages& messages) {
   const std::string driver = dataset.GetDriver() == nullptr ? "" : dataset.GetDriver()->GetDescription();
   if (driver == "ENVI") check_envi(dataset, path, file);
+  constexpr std::uint64_t kHeaderOfPCRaster = 256;
+  if (driver == "PCRaster") check_size(dataset, path, file, kHeaderOfPCRaster);
   if (driver == "MapInfo File") check_mapinfo(dataset, path, file);
   if (driver == "GeoJSONSeq" && messages.failed())
     throw InputError(path + ": cannot be read as a whole: " + messages.take() + ": copy it again, or mend the line");

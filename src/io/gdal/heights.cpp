@@ -14,6 +14,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
+#include "text_grid.hpp"
 
 namespace talus::io {
 namespace {
@@ -266,6 +267,7 @@ bool reads_pieces_apart(GDALDataset& dataset, const RasterPart& piece) {
 void read_heights(const std::string& path, Terrain& terrain, int threads) {
   const Grid& grid = terrain.heights.grid;
   const Dataset dataset = open_dataset(path, GDAL_OF_RASTER);
+  check_text_grid(*dataset, path);
   std::vector<RasterPart> pieces = pieces_of(*dataset->GetRasterBand(1), {0, 0, grid.columns, grid.rows});
   const int most = reads_pieces_apart(*dataset, pieces.front()) ? kMostReaders : 1;
   const int at_once = std::clamp(std::min(threads, static_cast<int>(pieces.size())), 1, most);
@@ -282,7 +284,8 @@ void read_heights(const std::string& path, Terrain& terrain, int threads) {
                                "missing, too");
   const bool above = found.lowest_other > kFarFromZero, below = found.highest_other < -kFarFromZero;
   if (found.zeros > 0 && found.zeros < found.known && (above || below))
-    terrain.warnings.push_back(path + ": " + std::to_string(found.zeros) + " cells have the height 0 and all others " +
+    terrain.warnings.push_back(path + ": " + std::to_string(found.zeros) +
+                               (found.zeros == 1 ? " cell has" : " cells have") + " the height 0 and all others " +
                                (above ? "more than " + text_of(std::floor(found.lowest_other))
                                       : "less than " + text_of(std::ceil(found.highest_other))) +
                                " m: if 0 stands for missing values, declare it with " + command_to_declare(path, "0"));

@@ -5,6 +5,7 @@
 
 #include "talus/base/bounds.hpp"
 #include "talus/base/error.hpp"
+#include "text_grid.hpp"
 
 namespace talus::io {
 
@@ -53,7 +54,9 @@ PixelReader::PixelReader(GDALDataset& dataset, std::string path)
     : band_(*dataset.GetRasterBand(1)),
       path_(std::move(path)),
       masked_((band_.GetMaskFlags() & GMF_ALL_VALID) == 0),
-      nodata_(band_) {}
+      nodata_(band_) {
+  check_text_grid(dataset, path_);
+}
 
 double PixelReader::at(double column, double row) {
   if (!(column >= 0.0 && row >= 0.0 && column < band_.GetXSize() && row < band_.GetYSize())) return kNotGiven;

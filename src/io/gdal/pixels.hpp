@@ -41,6 +41,7 @@ class NodataBesideMask {
 /// Reads single pixels of the first band through a cache of the last tiles of the file.
 class PixelReader {
  public:
+  /// Throws InputError as `check_text_grid`.
   PixelReader(GDALDataset& dataset, std::string path);
 
   /// The value of the pixel as stored; NaN if there is none.

@@ -194,6 +194,15 @@ class AttributeReader {
   std::size_t features_ = 0;
 };
 
+/// Whether a geometry has heights of its own. Those that are 0 or no number are none: KML writes 0 for a height that is
+/// not known.
+bool has_heights(const OGRGeometry* geometry) {
+  if (geometry == nullptr || geometry->Is3D() == 0 || geometry->IsEmpty()) return false;
+  OGREnvelope3D box;
+  geometry->getEnvelope(&box);
+  return std::isfinite(box.MinZ) && std::isfinite(box.MaxZ) && (box.MinZ != 0.0 || box.MaxZ != 0.0);
+}
+
 /// Whether a straight line has a length in a cell with its edges, not a touch alone.
 bool runs_through(const OGRLineString& segment, const Grid& grid, const Cell& cell) {
   constexpr double kTouch = 1e-9;  // cells
@@ -454,7 +463,9 @@ SourceLayer read_sources(const std::string& path, const Terrain& terrain, const 
   AttributeReader attributes(layer, path, release_height, fields);
   SourceLayer out;
   Placer placer(terrain, out);
+  std::size_t with_heights = 0;
   for_each_feature(layer, [&](const Feature& feature) {
+    with_heights += has_heights(feature->GetGeometryRef()) ? 1 : 0;
     out.features.push_back(attributes.read(*feature));
     placer.place(layer.parts(*feature), feature->GetFID());
   });
@@ -463,6 +474,10 @@ SourceLayer read_sources(const std::string& path, const Terrain& terrain, const 
   out.attributes = attributes.record();
   out.read_note = attributes.read_note();
   out.unread_notes = attributes.unread_notes();
+  if (with_heights > 0)
+    out.unread_notes.push_back(path + ": the height (Z) of " + std::to_string(with_heights) + " of " +
+                               std::to_string(out.features.size()) +
+                               " features is not read: blocks start above the DEM, by the release height");
   out.unread_height = attributes.has_unread_height();
   layer.tell(out);
   return out;

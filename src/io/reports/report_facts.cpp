@@ -89,6 +89,10 @@ void read_counts(const Json& json, RunFacts& run) {
   run.touched_cells = number_of(json, "touched_cells");
   if (json.contains("rounds")) run.rounds = number_of(json.at("rounds"), "done");
   for (const auto& [end, count] : json.at("ends").items()) run.ends.emplace_back(end, count.get<double>());
+  double ended = 0.0;
+  for (const auto& end : run.ends) ended += end.second;
+  if (ended != run.released)
+    throw InputError("it has " + text_of(run.released) + " released blocks, and ends of " + text_of(ended));
   if (!json.contains("energy_line_deg")) return;
   const Json& line = json.at("energy_line_deg");
   run.energy_line = {number_of(line, "least"), number_of(line, "p5"), number_of(line, "p50")};

@@ -7,6 +7,7 @@
 #include "io/gdal/regular_file.hpp"
 #include "report_facts.hpp"
 #include "talus/base/bounds.hpp"
+#include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
@@ -15,23 +16,31 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Bounds kDistance{"distance_to", "m", "in x from the release", 0.0, 1e9};
+constexpr Bounds kStops{"stopped", "1", "blocks", 0.0, 1e12};
 constexpr Bounds kShare{"share_beyond", "1", "of the blocks", 0.0, 1.0};
 
-/// The first distance that no more than a share of the blocks goes beyond.
-void read_reaches(const fs::path& file, ProfilePart& part) {
-  const CsvTable table(file.string(), {}, {"distance_to", "share_beyond"});
+/// The first distance that no more than a share of the blocks goes beyond. Throws InputError if the table has not as
+/// many stops as the run.
+void read_reaches(const fs::path& file, double stops, ProfilePart& part) {
+  const CsvTable table(file.string(), {}, {"distance_to", "stopped", "share_beyond"});
+  double found = 0.0;
   for (const double share : {0.5, 0.1, 0.05, 0.01}) part.reaches.push_back({share, kNotGiven});
   for (const CsvTable::Row& row : table.rows()) {
     part.end = table.required(row, "distance_to", kDistance);
+    found += table.required(row, "stopped", kStops);
     const double beyond = table.required(row, "share_beyond", kShare);
     for (ProfilePart::Reach& reach : part.reaches)
       if (beyond <= reach.share && std::isnan(reach.distance)) reach.distance = part.end;
   }
+  if (found != stops)
+    throw InputError(file.string() + ": has " + text_of(found) + " blocks that stopped, run.json beside it says " +
+                     text_of(stops) +
+                     ": must be as talus profile has written it; copy it again, or run the profile again");
 }
 
 }  // namespace
 
-ProfilePart read_profile_part(const fs::path& folder) {
+ProfilePart read_profile_part(const fs::path& folder, double stops) {
   ProfilePart part;
   std::error_code none;
   const fs::path drawing = folder / "profile.svg", table = folder / "runout.csv";
@@ -41,7 +50,7 @@ ProfilePart read_profile_part(const fs::path& folder) {
     part.note = fault + ": it is not shown here.";
   else
     part.drawing = read_file(drawing.string(), drawing.string(), "a drawing of talus profile", kMostPageTable);
-  if (fs::exists(table, none)) read_reaches(table, part);
+  if (fs::exists(table, none)) read_reaches(table, stops, part);
   return part;
 }
 

@@ -19,8 +19,10 @@ struct ProfilePart {
   double end = 0.0;            ///< to which the table goes [m]
 };
 
-/// Throws InputError if runout.csv is there and cannot be understood.
-ProfilePart read_profile_part(const std::filesystem::path& folder);
+/// Throws InputError if runout.csv is there and cannot be understood, or is of another run.
+///
+/// @param stops  blocks of the run that stopped, were trapped or caught
+ProfilePart read_profile_part(const std::filesystem::path& folder, double stops);
 Markup profile_html(const ProfilePart& part);
 
 }  // namespace talus::io

@@ -50,7 +50,9 @@ RunReport read_report(const fs::path& folder) {
   report.hazard = read_hazard_facts(folder, report.run);
   const NamedFiles named(folder, report.run, report.hazard);
   report.sheet = read_sheet(folder, report.run, named);
-  if (report.run.of_profile) report.profile = read_profile_part(folder);
+  if (report.run.of_profile)
+    report.profile =
+        read_profile_part(folder, report.run.end("stopped") + report.run.end("trapped") + report.run.end("caught"));
   if (named.contains("screens_summary.csv")) report.screens = read_screens_part(folder);
   report.barriers = read_barrier_parts(folder, report.hazard);
   if (named.contains("objects.csv")) report.objects = read_objects_part(folder, report.run.count_rotation);

@@ -28,10 +28,13 @@ class OutputFolder {
     Resume   ///< takes over the latest, if there is one, with its finished maps
   };
 
-  /// @param overwrite  an earlier result of talus (it holds a run.json, part.json, calibration.json or diagnosis.json)
-  /// may be replaced. Throws InputError if the name is taken, if another process writes a result of this name, if there
-  /// are files in it that are not of this result, or if nothing can be written there.
-  OutputFolder(const std::filesystem::path& path, bool overwrite, Unfinished unfinished = Unfinished::Ignore);
+  /// @param overwrite  an earlier result of the same command may be replaced (it holds a run.json, part.json,
+  /// calibration.json or diagnosis.json)
+  /// @param command    that writes the results; parts and merged ones are those of "talus run", too. Throws InputError
+  /// if the name is taken, if another process writes a result of this name, if there are files in it that are not of
+  /// this result, or if nothing can be written there.
+  OutputFolder(const std::filesystem::path& path, bool overwrite, Unfinished unfinished = Unfinished::Ignore,
+               std::string command = "talus run");
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -49,9 +52,9 @@ class OutputFolder {
   /// Throws InputError if `file` lies in a folder that `commit` would replace: an input must not be deleted.
   void protect(const std::filesystem::path& file) const;
 
-  /// Names of files that later commands (hazard, barrier, report) have added to the results that `commit` would
-  /// replace.
-  std::vector<std::string> later_results() const;
+  /// What later commands (hazard, barrier, report) have added to the results that `commit` would replace; empty where
+  /// they have added nothing.
+  std::string later_results_note() const;
 
   /// Brings all files to the disk and gives the folder its name, if that is still free or may be overwritten. An
   /// earlier result is moved aside first, put back if the rename fails, and removed last. Throws std::runtime_error.
@@ -69,6 +72,7 @@ class OutputFolder {
   MadeFolders parents_;  // before `staged_`: removed after it
   StagedPath staged_;
   bool overwrite_;
+  std::string command_;
   std::unique_ptr<FolderLock> lock_;  // of `work`
 };
 

@@ -25,7 +25,7 @@ struct SourceLayer {
   std::vector<Setting> attributes;      ///< settings read from the fields
   std::vector<Reprojection> reprojections;
   std::string read_note;                  ///< which fields were read, with the range of their values
-  std::vector<std::string> unread_notes;  ///< fields that look as if they were meant, and are not read
+  std::vector<std::string> unread_notes;  ///< fields, and heights, that look as if they were meant, and are not read
   std::vector<std::string> warnings;
   bool unread_height = false;  ///< there is a field height, which is not read: it is mostly that of a cliff
 };
