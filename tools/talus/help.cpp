@@ -151,8 +151,11 @@ Json scenario_json() {
 Json results_json() {
   Json json = Json::array();
   for (const talus::io::ProjectLayer& layer : talus::io::project_layers())
-    json.push_back(
-        {{"file", layer.file}, {"title", layer.title}, {"shown", layer.shown}, {"counts_energy", layer.counts_energy}});
+    json.push_back({{"file", layer.file},
+                    {"title", layer.title},
+                    {"shown", layer.shown},
+                    {"counts_energy", layer.counts_energy},
+                    {"style", layer.style}});
   return json;
 }
 

@@ -40,6 +40,7 @@ struct ProjectLayer {
   std::string title;           ///< "Return period of more than <n> kJ"
   bool shown = false;          ///< at first; of the maps only one: the hazard class, if there is one
   bool counts_energy = false;  ///< its title says so where the run counts the energy with rotation
+  std::string style{};         ///< of a mark over the map of the file; without this style there is no layer
 };
 /// The end of such a title.
 inline constexpr const char* kWithRotation = ", energy with rotation";
