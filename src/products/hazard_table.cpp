@@ -46,7 +46,8 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-/// The classes of the matrix.
+/// The classes of the matrix. The colours of the marks differ from those of the classes and from a hillshade, also for
+/// the colour-blind (tests/io/style_test.cpp).
 HazardRaster class_raster(const EnergyWords& energy) {
   return {
       .map = {"hazard_class",
@@ -57,7 +58,11 @@ HazardRaster class_raster(const EnergyWords& energy) {
                {"class at upper bound", "class"},
                {"undecided", "1"},
                {"cut short", "1"}},
-              {{1, 2, 3, 4, 5}, 1.0, "", Palette::HazardClasses, "", true, true}},
+              {{1, 2, 3, 4, 5}, 1.0, "", Palette::HazardClasses, "", true, true},
+              false,
+              {},
+              {{"cut short", "paths leave the map here", "#c30fa5"},
+               {"undecided", "not decided by so few blocks", "#ff6d00"}}},
       .meaning =
           "class of the matrix; `undecided` is 1 where the classes at the bounds differ, `cut short` where "
           "paths leave the map",

@@ -1,6 +1,8 @@
 """How trajectories end: trapped between walls, out of the map; the maps, layers and warnings of it."""
 import os
+import re
 import unittest
+import xml.etree.ElementTree as xml
 
 import numpy as np
 from osgeo import gdal, ogr
@@ -67,9 +69,39 @@ class Ends(Case):
         hazard = gdal.Open(self.path("out/hazard_class.tif"))
         self.assertEqual(hazard.GetRasterBand(5).GetDescription(), "cut short")
         np.testing.assert_array_equal(hazard.GetRasterBand(5).ReadAsArray() == 1, exits > 0)
+        self.assertIn("hazard_class_cut_short.qml", self.read_json("out/hazard.json")["files"])
+        self.assert_cut_short_is_shown(exits > 0)
         again = self.write("again.toml", "[features]\ncliff = 0.1\n")  # other frequencies: traced again
         done = self.run_well("hazard", self.path("out"), "--overwrite", "--frequency", again)
         self.assertIn("0.1 of the 0.1 events per year (100 %) leave the DEM", done.stderr)
+
+    def assert_cut_short_is_shown(self, cells):
+        """By a layer of talus.qgs that is on, and over every map of the report: a square for each cell, whose middle is its own."""
+        layer, = [layer for layer in xml.parse(self.path("out/talus.qgs")).getroot().iter("layer-tree-layer")
+                  if layer.get("name") == "Hazard goes on beyond the map (cut short)"]
+        self.assertEqual((layer.get("source"), layer.get("checked")), ("./hazard_class.tif", "Qt::Checked"))
+        self.run_well("report", self.path("out"), "-q")
+        page = self.read_text("out/report.html")
+        self.assertIn(">paths leave the map here</text>", page)
+        viewer = dict(re.findall(r'data-(\S+)="(\S+)"', re.search("id='viewer'[^>]*>", page).group(0)))
+        path = re.search(r"<path id='cut-short' [^>]*d=\"([^\"]*)\"", page).group(1)
+        found = np.zeros(cells.shape, int)
+        for left, top, wide, high in re.findall(r"M(\S+) (\S+)h(\S+)v(\S+)h-\S+?z", path):
+            x = float(viewer["west"]) + (float(left) + 0.5 * float(wide)) * int(viewer["columns"]) * 5.0 / float(viewer["width"])
+            y = float(viewer["north"]) - (float(top) + 0.5 * float(high)) * int(viewer["rows"]) * 5.0 / float(viewer["height"])
+            found[int((NORTH - y) // 5), int((x - WEST) // 5)] += 1
+        np.testing.assert_array_equal(found, cells)
+        os.remove(self.path("out/report.html"))
+
+    def test_where_no_block_leaves_nothing_is_cut_short(self):
+        self.dem(1000.0 + 0.75 * np.abs(UP - 147.5))
+        self.sources(140, 200, frequency=0.4)
+        self.run_well(*self.arguments())
+        self.run_well("hazard", self.path("out"), "-q")
+        self.assertNotIn("hazard_class_cut_short.qml", os.listdir(self.path("out")))
+        self.assertNotIn("cut short", self.read_text("out/talus.qgs"))
+        self.run_well("report", self.path("out"), "-q")
+        self.assertNotIn("cut-short", self.read_text("out/report.html"))
 
     def test_a_piece_that_leaves_counts_for_its_block(self):
         """Near the eastern edge of a slope that faces south, with nothing that turns blocks: the largest piece of each stays

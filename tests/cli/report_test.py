@@ -417,6 +417,46 @@ class Content(Report):
             self.assertEqual(low != high, row["object"] == "EGID 9")  # nothing came there, of too few blocks to say more
             self.assertIn(f"<td>{here} [{low} to {high}]</td>" if low != high else f"<td>{here}</td>", told[row["object"]])
 
+    def test_a_road_that_is_screen_and_object_is_named_once(self):
+        line = f"LINESTRING ({WEST} 1200100,{WEST + 300} 1200100)"
+        write_features(self.path("road.gpkg"), "road", [(line, ["road"]), (line.replace("1200100", "1200110"), ["path"])], [("name", ogr.OFTString)])
+        self.run_scenario("out", "--trajectories", "3")
+        self.run_well("hazard", self.path("out"), "--objects", self.path("road.gpkg"), "--width", "5", "-q")
+        source = self.page().source
+        names = re.findall(r"<text[^>]*font-weight=\"bold\"[^>]*>(road|path|net)</text>", source[:source.index("</defs>")])
+        self.assertEqual(sorted(names), ["net", "path", "road"])
+
+    def test_no_name_is_lost_where_there_is_little_room(self):
+        """Forty houses side by side, a row of three parallel ways that lead over both edges of the map."""
+        houses = [(box(100 + 5 * (i % 10), 100 + 5 * (i // 10), 4.5, 4.5), [f"house {i}"]) for i in range(37)]
+        ways = [(f"LINESTRING ({WEST - 900} {1200120 + 3 * i},{WEST + 900} {1200120 + 3 * i})", [f"way {i}"]) for i in range(3)]
+        write_features(self.path("houses.gpkg"), "houses", houses + ways, [("name", ogr.OFTString)])
+        self.run_scenario("out", "--trajectories", "3")
+        self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "-q")
+        page = self.page()
+        source, viewer = page.source, page.viewer()
+        found = {}
+        for x, y, name in re.findall(r'<text x="([^"]*)" y="([^"]*)"[^>]*font-weight="bold"[^>]*>((?:house|way) \d+)</text>',
+                                     source[:source.index("</defs>")]):
+            self.assertNotIn(name, found)
+            found[name] = float(x), float(y)
+        self.assertEqual(set(found), {names[0] for _, names in houses + ways})
+        for name, (x, y) in found.items():
+            self.assertTrue(0 <= x <= float(viewer["data-width"]) - 6 * len(name) and 10 <= y <= float(viewer["data-height"]), (name, x, y))
+            for other, (u, v) in found.items():
+                self.assertTrue(name == other or abs(y - v) >= 12 or x + 6 * len(name) < u or u + 6 * len(other) < x, (name, other))
+
+    def test_titles_of_legends_are_as_long_as_there_is_room(self):
+        """A bold letter of 11 px is about 6.2 px wide, and a legend 230 px."""
+        self.write("s.toml", self.read_text("s.toml") + "count_rotation = true\n")
+        self.results()
+        source = self.page().source
+        groups = re.findall(r'<g id="legend-\d+"[^>]*>(.*?)</g>', source, re.DOTALL)
+        titles = [re.findall(r'<text[^>]*font-weight="bold"[^>]*>([^<]*)</text>', group) for group in groups]
+        self.assertIn("Return period, total E &gt; 300 kJ [years]", [" ".join(title) for title in titles])
+        for title in titles:
+            self.assertLessEqual(max(len(line.replace("&gt;", ">")) for line in title), 36, title)
+
     def test_hostile_names_stay_text(self):
         road = f"road{HOSTILE}"
         write_features(self.path("screens.gpkg"), "screens",
@@ -717,6 +757,87 @@ class Browser(Report):
         self.write("alone.html", html.replace("class='map low'", "class='map'"))  # one on a page
         pages = [self.printed(self.path(name)).count(b"/Type /Page\n") for name in ("valley/report.html", "alone.html")]
         self.assertLessEqual(pages[0], pages[1] - maps // 2 + 1)
+
+    def test_a_table_of_objects_with_many_sources_fits(self):
+        """Twenty sources for each of two roads, three of them named: on the screen and on A4, each row a few lines high."""
+        write_features(self.path("sources.gpkg"), "sources",
+                       [(box(60 + 10 * i, 230, 6, 10), [f"cliff above the road {i}", 0.5]) for i in range(20)],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        write_features(self.path("roads.gpkg"), "roads",
+                       [(f"LINESTRING ({WEST} {1200100 + 20 * i},{WEST + 300} {1200100 + 20 * i})", [name])
+                        for i, name in enumerate(("Gemeindestrasse zum Hinterfeld", "Waldweg"))], [("name", ogr.OFTString)])
+        self.run_scenario("many", "--thresholds", "30,100,300,1000,3000,10000", "--trajectories", "5")
+        self.run_scenario("out")
+        for out in ("many", "out"):
+            self.run_well("hazard", self.path(out), "--objects", self.path("roads.gpkg"), "--width", "6", "-q")
+            page = self.page(out=out)
+            self.assert_objects_fit(page)
+        shares = {}
+        for row in self.read_table("out/objects_sources.csv"):
+            shares.setdefault(row["object"], []).append((row["feature"], float(row["share"])))
+        for road, sources in shares.items():
+            self.assertGreater(len(sources), 10)
+            largest = sorted(sources, key=lambda one: -one[1])[:3]
+            self.assertIn("; ".join(f"{name} {100 * share:.3g} %" for name, share in largest) + f"; and {len(sources) - 3} more", page.text)
+
+    def assert_objects_fit(self, page):
+        script = """<script>addEventListener('load', () => {
+            const table = document.querySelector('table.objects'), state = document.createElement('pre');
+            state.id = 'state';
+            state.textContent = JSON.stringify([table.scrollWidth, table.parentElement.clientWidth, document.documentElement.scrollWidth,
+                Array.from(table.rows).slice(1).map(row => row.offsetHeight)]);
+            document.body.append(state); });</script></body>"""
+        policy = re.search('<meta http-equiv="Content-Security-Policy"[^>]*>', page.source).group(0)
+        self.write("measured.html", page.source.replace(policy, "").replace("</body>", script))
+        for width in (1100, 733):  # A4, 210 mm, less two margins of 14 mm: 688 px; here with a rim of 15 px and a scroll bar
+            dom = self.chromium(f"--window-size={width},1600", "--dump-dom", "file://" + self.path("measured.html"))
+            table, room, whole, rows = json.loads(re.search('<pre id="state">(.*?)</pre>', dom, re.DOTALL).group(1))
+            self.assertLessEqual(table, room, width)
+            self.assertLessEqual(whole, width)
+            self.assertLess(max(rows), 150, width)
+
+    def test_pages_end_at_no_header_and_before_no_last_row(self):
+        """Wherever a page ends: the matrix of the classes is on one page, and the last row of the checklist is not alone."""
+        self.results()
+        source = self.page().source
+        paint = ("<style>table.whole th{background:#f0f!important}table.whole td{background:#0ff!important}"
+                 ".a td{background:#f80!important}.b td{background:#08f!important}</style></head>")
+        source = source.replace("</head>", paint)
+        checklist = source.index("<h2>Before you sign")
+        rows = [found.start() for found in re.finditer("<tr", source[checklist:source.index("<table class='sign'")])]
+        self.assertGreater(len(rows), 8)
+        last, before = (checklist + at for at in (rows[-1], rows[-2]))
+
+        def painted(text, name):
+            return re.sub(r"<tr(?: class='\w+')?>", f"<tr class='{name}'>", text, count=1)
+
+        source = source[:before] + painted(source[before:last], "a") + painted(source[last:], "b")
+        body, end = source.split("<h3>Classes of hazard</h3>"), "<h2>Before you sign</h2>"
+        self.assertEqual((len(body), body[1].count(end)), (2, 1))
+        head = body[0].split("<body>")[0] + "<body>"
+        for millimetres in range(150, 270, 12):
+            space = f"<div style='height:{millimetres}mm'></div>"
+            matrix = body[1][:body[1].index("</table>") + 8]
+            checks = body[1][body[1].index(end):body[1].index("<h2>Record</h2>")]
+            self.write("paged.html", head + space + "<h3>Classes of hazard</h3>" + matrix +
+                       "<div style='break-before:page'></div>" + f"<div style='height:{millimetres - 140}mm'></div>" + checks + "</body></html>")
+            self.printed(self.path("paged.html"))
+            for one, other in (((255, 0, 255), (0, 255, 255)), ((255, 136, 0), (0, 136, 255))):
+                pages = [self.pages_with(colour) for colour in (one, other)]
+                self.assertEqual(len(pages[0]), 1, (millimetres, one))
+                self.assertEqual(pages[0], pages[1], (millimetres, one))
+
+    def pages_with(self, colour):
+        """Numbers of the pages of page.pdf with a colour."""
+        found = []
+        with open(self.path("page.pdf"), "rb") as file:
+            count = file.read().count(b"/Type /Page\n")
+        for number in range(1, count + 1):
+            page = gdal.OpenEx(f"PDF:{number}:{self.path('page.pdf')}", gdal.OF_RASTER, open_options=["DPI=50", "RENDERING_OPTIONS=VECTOR"])
+            pixels = page.ReadAsArray()[:3].astype(int)
+            if np.any(np.all(np.abs(pixels - np.array(colour)[:, None, None]) < 8, axis=0)):
+                found.append(number)
+        return found
 
     def printed(self, page):
         self.chromium("--print-to-pdf=" + self.path("page.pdf"), "file://" + page)

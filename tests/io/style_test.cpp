@@ -200,6 +200,35 @@ TEST(Colours, ReturnPeriodsHaveNoneOfWhatTheyAreDrawnOver) {
   EXPECT_EQ(classes_of(map_of("hazard_class")).size(), 4U);
 }
 
+TEST(Marks, StyleDrawsOneValueOfTheirBand) {
+  const Map map = map_of("hazard_class");
+  ASSERT_EQ(map.marks.size(), 2U);
+  for (const Map::Mark& mark : map.marks) {
+    const Tree tree(CPLParseXMLString(style_of(map, mark).c_str()), CPLDestroyXMLNode);
+    const CPLXMLNode* renderer = CPLGetXMLNode(tree.get(), "=qgis.pipe.rasterrenderer");
+    ASSERT_NE(renderer, nullptr);
+    EXPECT_STREQ(CPLGetXMLValue(renderer, "band", ""), mark.band == "cut short" ? "5" : "4");  // docs/hazard.md
+    EXPECT_STREQ(CPLGetXMLValue(renderer, "type", ""), "paletted") << "what has no entry is transparent";
+    EXPECT_STREQ(CPLGetXMLValue(renderer, "colorPalette.paletteEntry.value", ""), "1");
+    EXPECT_EQ(CPLGetXMLValue(renderer, "colorPalette.paletteEntry.color", ""), mark.colour);
+  }
+  EXPECT_EQ(mark_style_name("hazard_class", "cut short"), "hazard_class_cut_short.qml");
+}
+
+TEST(Marks, AreSeenOverClassesAndOverAHillshade) {
+  constexpr double kLeast = 15.0;  // as of neighbours
+  for (const Map::Mark& mark : map_of("hazard_class").marks)
+    for (const auto& [eye, matrix] : eyes()) {
+      std::vector<std::string> below{"#404040", "#808080", "#c0c0c0", "#ffffff"};
+      for (const LegendClass& one : classes_of(map_of("hazard_class"))) below.push_back(one.colour);
+      for (const Map::Mark& other : map_of("hazard_class").marks)
+        if (other.band != mark.band) below.push_back(other.colour);
+      for (const std::string& colour : below)
+        EXPECT_GE((lab_of(matrix * linear(mark.colour)) - lab_of(matrix * linear(colour))).norm(), kLeast)
+            << mark.band << " " << colour << " " << eye;
+    }
+}
+
 TEST(ClassNames, OfClassesAndOfIntensities) {
   Map classes = map_of("hazard_class");
   classes.classes = {"none", "\"low\" < 30 & rare", "high"};
@@ -234,10 +263,10 @@ TEST(VectorStyle, ClassesOfTheRaster) {
     ASSERT_NE(ranges, nullptr);
     std::vector<LegendClass> classes = classes_of(map_of(raster));
     const bool objects = layer == StyledLayer::AreaObjects || layer == StyledLayer::LineObjects;
-    if (objects) classes.push_back({1e100, "no hit per year", "#bdbdbd"});  // which has no return period
+    if (objects) classes.push_back({1e100, "no hit counted in this run", "#ffffff"});  // which has no return period
     if (layer == StyledLayer::Screens || layer == StyledLayer::Bins)
-      classes.push_back({1e100, "no crossing", "#bdbdbd"});
-    if (layer == StyledLayer::Stretches) classes.push_back({1e100, "too few crossings for a design", "#bdbdbd"});
+      classes.push_back({1e100, "no crossing", "#ffffff"});
+    if (layer == StyledLayer::Stretches) classes.push_back({1e100, "too few crossings for a design", "#ffffff"});
     std::size_t i = 0;
     double upper = 0.0;
     for (const CPLXMLNode* range = ranges->psChild; range != nullptr; range = range->psNext, ++i) {
@@ -306,6 +335,10 @@ TEST_F(Project, NoIdOfALayerBeginsAnother) {
   std::vector<std::string> files;
   for (const ProjectLayer& layer : project_layers())
     for (const char* word : {"30", "300"}) {
+      if (!layer.style.empty()) {
+        files.push_back(layer.style);
+        break;
+      }
       const std::size_t at = layer.file.find('<'), end = layer.file.find('>');
       files.push_back(at == std::string::npos ? layer.file
                                               : layer.file.substr(0, at) + word + layer.file.substr(end + 1));
@@ -319,6 +352,29 @@ TEST_F(Project, NoIdOfALayerBeginsAnother) {
   ASSERT_GT(ids.size(), 29U);
   for (const std::string& one : ids)
     EXPECT_EQ(std::ranges::count_if(ids, [&](const std::string& id) { return id.starts_with(one); }), 1) << one;
+}
+
+TEST_F(Project, MarksLieOverTheClassesWhereThereAreSome) {
+  const auto text = [this](std::vector<std::string> files) {
+    files.insert(files.end(), {"hazard_class.tif", "annual_frequency.tif", "stops.gpkg"});
+    return project_of(files, path(""), path("out"), {{"", 0.0, 100.0, 1.0, 1.0}, 10, 10, ""});
+  };
+  EXPECT_EQ(text({"hazard_class.qml"}).find("beyond"), std::string::npos);
+  const std::string both = text({"hazard_class_cut_short.qml", "hazard_class_undecided.qml"});
+  const auto in_tree = [&both](const std::string& name) {
+    const std::size_t at = both.find("name=\"" + name + "\"");
+    EXPECT_NE(at, std::string::npos) << name;
+    return std::pair(at, both.substr(at, both.find('>', at) - at));
+  };
+  const auto cut = in_tree("Hazard goes on beyond the map (cut short)"), undecided = in_tree("Class undecided"),
+             classes = in_tree("Hazard class");
+  EXPECT_LT(in_tree("Stops: largest energy of the path").first, cut.first);
+  EXPECT_LT(cut.first, undecided.first);
+  EXPECT_LT(undecided.first, classes.first);
+  for (const auto& [layer, checked] : {std::pair{cut, true}, {undecided, false}, {classes, true}}) {
+    EXPECT_EQ(layer.second.find("Qt::Checked") != std::string::npos, checked) << layer.second;
+    EXPECT_NE(layer.second.find("source=\"./hazard_class.tif\""), std::string::npos) << layer.second;
+  }
 }
 
 TEST_F(Project, TheHillshadeIsFoundByEveryPathToTheProject) {

@@ -23,7 +23,7 @@ from qgis.core import (QgsApplication, QgsCoordinateReferenceSystem, QgsFeature,
                        QgsProcessingModelChildAlgorithm, QgsProcessingModelChildParameterSource,
                        QgsProcessingOutputLayerDefinition, QgsProcessingParameterBand, QgsProcessingParameterBoolean,
                        QgsProcessingParameterDefinition, QgsProject,
-                       QgsRasterLayer, QgsRasterRange, QgsVectorLayer, QgsVectorLayerJoinInfo)
+                       QgsRasterLayer, QgsRasterRange, QgsRectangle, QgsVectorLayer, QgsVectorLayerJoinInfo)
 from qgis.PyQt.QtCore import QEventLoop, QLocale, QSize, Qt, QTimer, QVariant
 from qgis.PyQt.QtGui import QColor
 
@@ -198,6 +198,30 @@ class Provider(Case):
         self.assertEqual(texts.LABELS["number-of-blocks"][1], "Zahl der Blöcke")
         run = QgsApplication.processingRegistry().algorithmById("talus:run")
         self.assertTrue(run.parameterDefinition("TRAJECTORIES").description().startswith("Trajectories per source cell"))
+
+    def test_the_help_says_more_than_the_label_and_names_no_flag(self):
+        from talus_qgis import texts
+        before = QLocale()
+        try:
+            for language in ("en", "de_CH"):
+                QgsApplication.setLocale(QLocale(language))
+                said = {}
+                for name in ALGORITHMS:
+                    text = QgsApplication.processingRegistry().createAlgorithmById("talus:" + name).shortHelpString()
+                    self.assertNotRegex(text, r"(?<![\w-])--[a-z]", name)
+                    said[name] = dict(re.findall(r"<p><b>([^<]*)</b>(.*?)</p>", text))
+                find = lambda name, begin: next(help for title, help in said[name].items() if title.startswith(begin))
+                german = language != "en"
+                self.assertEqual(find("run", texts.label("diameter")), "")  # of the blocks
+                self.assertEqual(find("run", texts.label("trajectories")), "")
+                self.assertEqual(find("run", texts.label("seed")), ": gleicher Startwert, gleiche Ergebnisse" if german else "")
+                self.assertEqual(find("barrier", texts.label("percentile")), ": 95 (Vorgabe)" if german else ": 95 (default)")
+                self.assertEqual(find("barrier", texts.label("volume")), ": der grösste Durchgang, wenn nicht angegeben" if german
+                                 else ": the largest that crosses where it is not given")
+                self.assertIn(texts.label("objects"), find("objects", texts.label("width-field")) if not german else texts.label("objects"))
+                self.assertIn(texts.label("pits"), find("check", texts.label("overwrite")) if not german else texts.label("pits"))
+        finally:
+            QgsApplication.setLocale(before)
 
     def test_german(self):
         from talus_qgis import texts
@@ -894,6 +918,27 @@ class FromPython(Case):
         with open(self.path(name), encoding="utf-8") as file:
             return list(csv.DictReader(file))
 
+    def test_numbers_of_features_are_no_fields_of_objects(self):
+        """QGIS shows those of a GeoPackage as a field fid: nobody has to rename it. One of a Shapefile is a field."""
+        self.run_algorithm("run", self.inputs(FREQUENCY_FIELD="frequency", TRAJECTORIES=2))
+        houses = QgsVectorLayer(os.path.join(VALLEY, "houses.gpkg"), "houses", "ogr")
+        self.assertIn("fid", houses.fields().names())
+        houses.selectByIds([2])
+        QgsProject.instance().addMapLayer(houses)
+        self.addCleanup(QgsProject.instance().removeMapLayer, houses.id())
+        gdal.VectorTranslate(self.path("own.shp"), os.path.join(VALLEY, "houses.gpkg"), SQLDialect="sqlite",
+                             SQLStatement="SELECT geom, name, 7 AS number FROM houses LIMIT 1")
+        own = ogr.Open(self.path("own.shp"), 1)
+        own.GetLayer(0).AlterFieldDefn(1, ogr.FieldDefn("fid", ogr.OFTInteger), ogr.ALTER_NAME_FLAG)
+        own = None
+        for objects, told in (([os.path.join(VALLEY, "houses.gpkg"), self.road()], False),
+                              (QgsProcessingFeatureSourceDefinition(houses.id(), True), False),
+                              ([self.path("own.shp"), self.road()], True)):
+            log = Log()
+            _, good = self.run_algorithm("objects", {"FOLDER": self.path("out"), "OBJECTS": objects, "LOAD": False, "OVERWRITE": True}, log)
+            self.assertTrue(good, log.textLog())
+            self.assertEqual("are not copied" in " ".join(log.warnings), told, log.warnings)
+
     def test_an_object_layer_that_is_not_there_is_refused(self):
         self.run_algorithm("run", self.inputs(FREQUENCY_FIELD="frequency", TRAJECTORIES=2))
         algorithm = QgsApplication.processingRegistry().createAlgorithmById("talus:objects")
@@ -1093,10 +1138,43 @@ class FromPython(Case):
         self.assertTrue(good)
         self.load(context)
         layers = self.assert_as_in_project()
-        self.assertEqual(len(layers), len({layer.source() for layer in layers}))
+        self.assertEqual(len(layers), len({(layer.source(), layer.name()) for layer in layers}))
         hazard = next(layer for layer in layers if layer.name() == "Hazard class")
         self.assert_drawn_as_in_style(hazard)
         self.assertGreater(len(hazard.renderer().legendSymbologyItems()), 2)
+        QgsProject.instance().clear()
+
+    def test_where_the_hazard_goes_on_is_loaded_over_the_classes(self):
+        """Also where the maps are made anew. Without blocks that leave the map there is no such layer."""
+        gdal.Translate(self.path("part.tif"), DEM, projWin=[2650100, 1170750, 2650900, 1170450])
+        self.run_algorithm("run", self.inputs(DEM=self.path("part.tif")))
+        for _ in range(2):
+            context = QgsProcessingContext()
+            _, good = self.run_algorithm("hazard", {"FOLDER": self.path("out"), "LOAD": True, "OVERWRITE": True}, context=context)
+            self.assertTrue(good)
+            self.load(context)
+            layers = self.assert_as_in_project()
+            mark, undecided, classes = [layer for layer in layers if layer.source().endswith("hazard_class.tif")]
+            self.assertEqual((mark.name(), undecided.name()), ("Hazard goes on beyond the map (cut short)", "Class undecided"))
+            self.assertEqual(classes.renderer().type(), "singlebandpseudocolor")
+            self.assertEqual([label for label, _ in mark.renderer().legendSymbologyItems()], ["paths leave the map here"])
+            band = gdal.Open(self.path("out/hazard_class.tif"))
+            cut = band.GetRasterBand(5).ReadAsArray()
+            self.assertGreater((cut == 1).sum(), 3)
+            west, cell, _, north, _, _ = band.GetGeoTransform()
+            for value, colour in ((1, "#c30fa5"), (0, "#ffffff")):
+                rows, columns = (cut == value).nonzero()
+                x, y = west + columns[0] * cell, north - rows[0] * cell
+                settings = QgsMapSettings()
+                settings.setLayers([mark])
+                settings.setExtent(QgsRectangle(x, y - cell, x + cell, y))
+                settings.setDestinationCrs(mark.crs())
+                settings.setOutputSize(QSize(9, 9))
+                settings.setBackgroundColor(QColor("white"))
+                job = QgsMapRendererParallelJob(settings)
+                job.start()
+                job.waitForFinished()
+                self.assertEqual(job.renderedImage().pixelColor(4, 4).name(), colour)
         QgsProject.instance().clear()
 
     def test_german_legends(self):
@@ -1105,7 +1183,7 @@ class FromPython(Case):
         QgsApplication.setLocale(QLocale("de_CH"))
         try:
             told = {"up to 30 kJ": "bis 30 kJ", "30 to 100 kJ": "30 bis 100 kJ", "above 3000 kJ": "über 3000 kJ",
-                    "10 to 30 years": "10 bis 30 Jahre", "above 1000 years": "über 1000 Jahre", "no hit per year": "kein Treffer pro Jahr",
+                    "10 to 30 years": "10 bis 30 Jahre", "above 1000 years": "über 1000 Jahre", "no hit counted in this run": "in diesem Lauf kein Treffer gezählt",
                     "0 %": "0 %", "above 1 1/year": "über 1 1/Jahr", "up to 10": "bis 10", "residual": "Restgefährdung"}
             for english, german in told.items():
                 self.assertEqual(results.legend_text(english), german)
@@ -1183,6 +1261,8 @@ class FromPython(Case):
         from talus_qgis import results, texts
         told = json.loads(subprocess.run([os.environ["TALUS"], "help", "--json"], capture_output=True, check=True).stdout)["results"]
         self.assertGreater(len(told), 25)
+        for label in ("paths leave the map here", "not decided by so few blocks"):  # src/products/hazard_table.cpp
+            self.assertIn(label, texts.GERMAN)
         for entry in told:
             self.assertIn(entry["title"], texts.GERMAN)
             for blank in ("<n>", "<id>", "<threshold>"):

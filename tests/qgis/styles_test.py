@@ -12,9 +12,9 @@ import unittest
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 from osgeo import gdal  # noqa: E402
-from qgis.core import (QgsApplication, QgsExpression, QgsExpressionContext, QgsExpressionContextUtils,  # noqa: E402
+from qgis.core import (QgsApplication, QgsExpression, QgsExpressionContext, QgsExpressionContextUtils, QgsFeature, QgsGeometry,  # noqa: E402
                        QgsMapRendererParallelJob, QgsMapSettings, QgsProject, QgsRasterLayer, QgsRectangle,
-                       QgsVectorLayer)
+                       QgsSingleSymbolRenderer, QgsVectorLayer)
 from qgis.PyQt.QtCore import QSize  # noqa: E402
 from qgis.PyQt.QtGui import QColor  # noqa: E402
 
@@ -87,10 +87,12 @@ class Project(unittest.TestCase):
                 self.assertEqual(layer.crs().authid(), "EPSG:4326" if name == "Sources of the run" else "EPSG:2056", name)
         names = list(self.layers)
         maps = [name for name in names if self.layers[name].type() == 1]
-        self.assertEqual((maps[0], names[-1]), ("Hazard class", "Hillshade of the DEM"))
+        self.assertEqual(maps[:2], ["Hazard goes on beyond the map (cut short)", "Class undecided"])
+        self.assertEqual((maps[2], names[-1]), ("Hazard class", "Hillshade of the DEM"))
         visible = [layer.name() for layer in self.group.findLayers() if layer.isVisible()]
         self.assertEqual(visible, ["Barrier at road: MEL by stretch", "Objects: return period of a hit", "Screens: energy, P95",
-                                   "Sources of the run", "Hazard class", "Hillshade of the DEM"])
+                                   "Sources of the run", "Hazard goes on beyond the map (cut short)", "Hazard class",
+                                   "Hillshade of the DEM"])
         self.assertEqual(self.layers["Hillshade of the DEM"].renderer().type(), "hillshade")
 
     def test_tables_and_inputs_are_those_of_the_files(self):
@@ -115,7 +117,7 @@ class Project(unittest.TestCase):
         self.assertEqual(raster("Hazard class"), ["none", "residual", "low", "medium", "high"])
         years = ["up to 10 years", "10 to 30 years", "30 to 100 years", "100 to 300 years", "300 to 1000 years", "above 1000 years"]
         self.assertEqual(raster("Return period of more than 300 kJ"), years)
-        self.assertEqual(vector("Objects: return period of a hit"), years + ["no hit per year"])
+        self.assertEqual(vector("Objects: return period of a hit"), years + ["no hit counted in this run"])
         self.assertEqual(raster("Reach probability"), ["0 %", "up to 2 %", "2 to 5 %", "5 to 10 %", "10 to 20 %", "20 to 50 %", "50 to 100 %"])
         kj = ["up to 30 kJ", "30 to 100 kJ", "100 to 300 kJ", "300 to 1000 kJ", "1000 to 3000 kJ", "above 3000 kJ"]
         self.assertEqual(vector("Barrier at road: MEL by stretch"), kj + ["too few crossings for a design"])
@@ -123,6 +125,24 @@ class Project(unittest.TestCase):
         for name in "Stops: largest energy of the path", "Ends off the map: energy":
             self.assertEqual(vector(name), kj)
         self.assertEqual(vector("Paths: largest speed")[0], "up to 5 m/s")
+
+    def test_objects_that_are_not_hit_are_seen_on_every_ground(self):
+        """White with a dark rim: the drawn symbol of the last class has both, for areas and for lines."""
+        areas = QgsVectorLayer("Polygon?crs=EPSG:2056", "areas", "memory")
+        lines = QgsVectorLayer("LineString?crs=EPSG:2056", "lines", "memory")
+        for layer, shape in ((areas, "POLYGON ((0 0,60 0,60 60,0 60,0 0))"), (lines, "LINESTRING (0 30,60 30)")):
+            feature = QgsFeature()
+            feature.setGeometry(QgsGeometry.fromWkt(shape))
+            layer.dataProvider().addFeatures([feature])
+        never = self.layers["Objects: return period of a hit"].renderer().ranges()[-1]
+        screens = self.layers["Screens: energy, P95"].renderer().ranges()[-1]  # lines without a crossing look alike
+        for layer, one in ((areas, never), (lines, screens)):
+            layer.setRenderer(QgsSingleSymbolRenderer(one.symbol().clone()))
+            for background in "#b0b0b0", "#606060":
+                image = renders([layer], QgsRectangle(-20, -20, 80, 80), layer.crs(), QSize(200, 200), background)
+                column = [QColor(image.pixel(100, y)).name() for y in range(200)]
+                self.assertIn("#ffffff", column, background)
+                self.assertGreaterEqual(column.count("#232323"), 2, background)
 
     def test_a_layer_alone_has_its_style(self):
         for name in "stops", "exits", "trajectories", "screens", "objects", "barrier_road":

@@ -155,7 +155,8 @@ Json results_json() {
                     {"title", layer.title},
                     {"shown", layer.shown},
                     {"counts_energy", layer.counts_energy},
-                    {"thresholds", layer.thresholds}});
+                    {"thresholds", layer.thresholds},
+                    {"style", layer.style}});
   return json;
 }
 

@@ -33,6 +33,12 @@ struct Map {
     std::string name;  ///< "P95", "P(E > 300 kJ)"
     std::string unit;  ///< "1" (a fraction), "kJ", "m/s", "m", "count"
   };
+  /// A band that is 1 in some cells and 0 in the others: drawn over the map, in one colour.
+  struct Mark {
+    std::string band;
+    std::string label;   ///< what is so in the cells
+    std::string colour;  ///< "#rrggbb"
+  };
   std::string name;   ///< "impact_probability"
   std::string title;  ///< one line of description
   Kind kind;
@@ -40,6 +46,7 @@ struct Map {
   Legend legend;
   bool smallest_in_overviews = false;  ///< overviews show the smallest cell of a pixel, else the largest
   std::vector<std::string> classes{};  ///< names of the values 0, 1, ... if the values are classes
+  std::vector<Mark> marks{};
 
   /// Fills the cells of a window: values[(row * window.columns + column) * bands + band], row 0 in the south; NaN means
   /// no value. Several threads may call it at the same time.

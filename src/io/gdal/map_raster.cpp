@@ -31,23 +31,24 @@ std::string MapRaster::metadata(const char* key) const {
 }
 
 /// Calls `visit(column, row, value)` for the cells of a window that have a value.
+/// @param band  of the dataset, or an overview of one
 template <class Visit>
-void MapRaster::for_each_value(const MapWindow& window, Visit visit) const {
+void MapRaster::for_each_value(GDALRasterBand& band, const MapWindow& window, Visit visit) const {
   GdalMessages messages;
   std::vector<double> values;
   std::vector<std::uint8_t> mask;
-  const bool masked = (band_->GetMaskFlags() & GMF_ALL_VALID) == 0;
+  const bool masked = (band.GetMaskFlags() & GMF_ALL_VALID) == 0;
   int given = 0;
-  const double scale = band_->GetScale(&given), offset = band_->GetOffset();
+  const double scale = band.GetScale(&given), offset = band.GetOffset();
   const RasterPart whole{window.column, window.row, window.column + window.columns, window.row + window.rows};
-  for (const RasterPart& part : pieces_of(*band_, whole)) {
+  for (const RasterPart& part : pieces_of(band, whole)) {
     const int columns = part.columns(), rows = part.rows();
     values.resize(std::size_t(columns) * rows);
     if (masked) mask.resize(values.size());
-    if (band_->RasterIO(GF_Read, part.left, part.top, columns, rows, values.data(), columns, rows, GDT_Float64, 0, 0,
-                        nullptr) != CE_None ||
-        (masked && band_->GetMaskBand()->RasterIO(GF_Read, part.left, part.top, columns, rows, mask.data(), columns,
-                                                  rows, GDT_Byte, 0, 0, nullptr) != CE_None))
+    if (band.RasterIO(GF_Read, part.left, part.top, columns, rows, values.data(), columns, rows, GDT_Float64, 0, 0,
+                      nullptr) != CE_None ||
+        (masked && band.GetMaskBand()->RasterIO(GF_Read, part.left, part.top, columns, rows, mask.data(), columns, rows,
+                                                GDT_Byte, 0, 0, nullptr) != CE_None))
       throw InputError(path_ + ": cannot be read: " + messages.take());
     for (std::size_t i = 0; i < values.size(); ++i)
       if ((!masked || mask[i] != 0) && std::isfinite(values[i]))
@@ -59,7 +60,7 @@ void MapRaster::for_each_value(const MapWindow& window, Visit visit) const {
 std::vector<double> MapRaster::pixels(const MapWindow& window, PixelValue kind) const {
   std::vector<double> pixels(std::size_t(window.width()) * window.height(), kNotGiven);
   std::vector<std::uint32_t> counts(kind == PixelValue::Mean ? pixels.size() : 0);
-  for_each_value(window, [&](int column, int row, double value) {
+  for_each_value(*band_, window, [&](int column, int row, double value) {
     const std::size_t at =
         std::size_t((row - window.row) / window.side) * window.width() + (column - window.column) / window.side;
     double& pixel = pixels[at];
@@ -76,7 +77,7 @@ std::vector<double> MapRaster::pixels(const MapWindow& window, PixelValue kind) 
 
 std::optional<MapWindow> MapRaster::positive_cells() const {
   int left = columns(), top = rows(), right = -1, bottom = -1;
-  for_each_value({0, 0, columns(), rows(), 1}, [&](int column, int row, double value) {
+  for_each_value(*band_, {0, 0, columns(), rows(), 1}, [&](int column, int row, double value) {
     if (!(value > 0.0)) return;
     left = std::min(left, column);
     right = std::max(right, column);
@@ -85,6 +86,15 @@ std::optional<MapWindow> MapRaster::positive_cells() const {
   });
   if (right < 0) return std::nullopt;
   return MapWindow{left, top, right - left + 1, bottom - top + 1, 1};
+}
+
+bool MapRaster::any_positive() const {
+  const int overviews = band_->GetOverviewCount();
+  GDALRasterBand& band = overviews > 0 ? *band_->GetOverview(overviews - 1) : *band_;
+  bool any = false;
+  for_each_value(band, {0, 0, band.GetXSize(), band.GetYSize(), 1},
+                 [&any](int, int, double value) { any = any || value > 0.0; });
+  return any;
 }
 
 }  // namespace talus::io

@@ -40,10 +40,12 @@ class MapRaster {
   std::vector<double> pixels(const MapWindow& window, PixelValue value) const;
   /// The smallest window that holds all cells with a value above 0; nothing if there is none.
   std::optional<MapWindow> positive_cells() const;
+  /// Whether any cell has a value above 0. Looks at the smallest overview: those of Talus show the largest value.
+  bool any_positive() const;
 
  private:
   template <class Visit>
-  void for_each_value(const MapWindow& window, Visit visit) const;
+  void for_each_value(GDALRasterBand& band, const MapWindow& window, Visit visit) const;
 
   std::string path_;
   Dataset dataset_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "svg.hpp"
@@ -52,6 +53,26 @@ std::string points_of(const std::vector<Eigen::Vector2d>& places, const MapScale
   return points;
 }
 
+/// Marked pixels as squares that are seen also where the pixels are small.
+Markup squares_of(const std::vector<std::uint8_t>& marks, const MapClass& look, const MapSheet& sheet,
+                  const MapScale& scale) {
+  constexpr double kLeastSide = 4.0;  // [px]
+  const double across = scale.per_metre * sheet.pixel_x, down = scale.per_metre * sheet.pixel_y;
+  const double wide = std::max(across, kLeastSide), high = std::max(down, kLeastSide);
+  const auto width = static_cast<std::size_t>(sheet.window.width());
+  std::string path;
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    if (marks[i] != 0)
+      path += "M" + tenth((static_cast<double>(i % width) + 0.5) * across - 0.5 * wide) + " " +
+              tenth((static_cast<double>(i / width) + 0.5) * down - 0.5 * high) + "h" + tenth(wide) + "v" +
+              tenth(high) + "h-" + tenth(wide) + "z";
+  if (path.empty()) return {};
+  Markup squares = "<path id='cut-short' stroke='#fff' stroke-width='0.4' "_html;
+  set_attribute(squares, "fill", css_colour(look.colour));
+  set_attribute(squares, "d", path);
+  return squares + "/>\n";
+}
+
 /// A rectangle in pixels.
 struct Box {
   double left, top, right, low;
@@ -67,46 +88,82 @@ Box box_around(const std::vector<Eigen::Vector2d>& places, const MapScale& scale
   return box;
 }
 
-/// The boxes of single places, as of the vertices of a line: it may be far from the middle of its own box.
-std::vector<Box> boxes_at(const std::vector<Eigen::Vector2d>& places, const MapScale& scale) {
-  std::vector<Box> boxes;
-  boxes.reserve(places.size());
-  for (const Eigen::Vector2d& place : places) boxes.push_back(box_around({place}, scale));
-  return boxes;
-}
-
 /// Writes names on the map, each beside what it names, where it is within the map and covers neither a kept box nor an
-/// earlier name, and no line where that can be had. A name without such a place is left out.
+/// earlier name, and no line where that can be had. A name without such a place covers a kept box, and a name without
+/// any place beside what it names stands as near as there is room, with a line that leads to it.
 class Names {
  public:
   Names(Svg& svg, const MapScale& scale) : svg_(svg), scale_(scale) {}
 
-  void keep_free(const Box& box) { taken_.push_back(box); }
+  void keep_free(const Box& box) { kept_.push_back(box); }
 
   void keep_free(const std::vector<Eigen::Vector2d>& line) {
     constexpr double kStep = 4.0;  // between points of a line that must not be covered [px]
-    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-      const Eigen::Vector2d from(scale_.x(line[i].x()), scale_.y(line[i].y())),
-          way = Eigen::Vector2d(scale_.x(line[i + 1].x()), scale_.y(line[i + 1].y())) - from;
-      const auto [first, last] = on_map(from, way);
-      if (first > last) continue;
-      const double steps = std::ceil((last - first) * way.norm() / kStep);
-      for (double step = 0.0; step <= steps; ++step)
-        on_lines_.push_back(from + (first + step / std::max(1.0, steps) * (last - first)) * way);
-    }
+    for (const Eigen::Vector2d& place : points_on(line, kStep)) on_lines_.push_back(place);
+  }
+
+  /// @param line  the name may stand anywhere beside it: its middle may be far from that of its own box
+  void put_at_line(const std::string& name, const std::vector<Eigen::Vector2d>& line, const char* colour) {
+    constexpr double kStep = 25.0;  // between places that are tried [px]
+    std::vector<Box> boxes;
+    for (const Eigen::Vector2d& place : line) boxes.push_back(box_around({place}, scale_));
+    for (const Eigen::Vector2d& at : points_on(line, kStep)) boxes.push_back({at.x(), at.y(), at.x(), at.y()});
+    put(name, boxes, colour);
   }
 
   /// @param beside  the name may stand beside any of them
   void put(const std::string& name, const std::vector<Box>& beside, const char* colour) {
     const std::string text = shortened(name, 32);
-    for (const bool over_lines : {false, true})
+    for (const Covers covers : {Covers::Nothing, Covers::Lines, Covers::Kept})
       for (const Box& of : beside)
         for (const Box& box : boxes_beside(of, text))
-          if (is_free(box, over_lines)) return write(text, box, colour);
+          if (is_free(box, covers)) return write(text, box, colour);
+    for (const Box& of : beside)
+      if (is_on_map(of)) return put_near(text, of, colour);
   }
 
  private:
   static constexpr double kLine = 13.0;  // height of a name [px]
+  enum class Covers { Nothing, Lines, Kept };
+
+  bool is_on_map(const Box& box) const {
+    return box.right >= 0.0 && box.low >= 0.0 && box.left <= scale_.width && box.top <= scale_.height;
+  }
+
+  /// Points of the parts of a line that are on the map [px].
+  std::vector<Eigen::Vector2d> points_on(const std::vector<Eigen::Vector2d>& line, double distance) const {
+    std::vector<Eigen::Vector2d> points;
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+      const Eigen::Vector2d from(scale_.x(line[i].x()), scale_.y(line[i].y())),
+          way = Eigen::Vector2d(scale_.x(line[i + 1].x()), scale_.y(line[i + 1].y())) - from;
+      const auto [first, last] = on_map(from, way);
+      if (first > last) continue;
+      const double steps = std::ceil((last - first) * way.norm() / distance);
+      for (double step = 0.0; step <= steps; ++step)
+        points.emplace_back(from + (first + step / std::max(1.0, steps) * (last - first)) * way);
+    }
+    return points;
+  }
+
+  /// Writes a name in the nearest room on rings around what it names.
+  void put_near(const std::string& text, const Box& of, const char* colour) {
+    const Eigen::Vector2d middle(std::clamp(0.5 * (of.left + of.right), 0.0, scale_.width),
+                                 std::clamp(0.5 * (of.top + of.low), 0.0, scale_.height));
+    const double width = width_of(text);
+    for (double radius = 20.0; radius < scale_.width + scale_.height; radius += 10.0)
+      for (int turn = 0; turn < 32; ++turn) {
+        const double angle = turn * std::numbers::pi / 16.0;
+        const Eigen::Vector2d at = middle + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+        const Box box{at.x() - 0.5 * width, at.y() - 0.5 * kLine, at.x() + 0.5 * width, at.y() + 0.5 * kLine};
+        if (!is_free(box, Covers::Kept)) continue;
+        svg_.element("line", {{"x1", middle.x()},
+                              {"y1", middle.y()},
+                              {"x2", std::clamp(middle.x(), box.left, box.right)},
+                              {"y2", std::clamp(middle.y(), box.top, box.low)},
+                              {"stroke", colour}});
+        return write(text, box, colour);
+      }
+  }
 
   /// Shares of a way between which it is on the map: a vertex may lie far off. The first is larger if it never is.
   std::pair<double, double> on_map(const Eigen::Vector2d& from, const Eigen::Vector2d& way) const {
@@ -124,9 +181,14 @@ class Names {
     return {first, last};
   }
 
+  static double width_of(const std::string& text) {
+    constexpr double kLetter = 6.8;  // of bold letters, generous [px]
+    return kLetter * static_cast<double>(text.size());
+  }
+
   std::array<Box, 8> boxes_beside(const Box& of, const std::string& text) const {
-    constexpr double kLetter = 6.8, kGap = 5.0;  // of bold letters, generous [px]
-    const double width = kLetter * static_cast<double>(text.size()), beside = 0.5 * (of.top + of.low + kLine);
+    constexpr double kGap = 5.0;  // [px]
+    const double width = width_of(text), beside = 0.5 * (of.top + of.low + kLine);
     const double right = of.right + kGap, left = of.left - kGap - width,
                  centred = std::min(0.5 * (of.left + of.right - width), scale_.width - width);  // or at the map's rim
     const double above = of.top - 2.0, below = of.low + kLine + 2.0;
@@ -135,7 +197,7 @@ class Names {
             box(right, above),  box(right, below), box(left, above),    box(left, below)};
   }
 
-  bool is_free(const Box& box, bool over_lines) const {
+  bool is_free(const Box& box, Covers covers) const {
     if (!(box.left >= 0.0 && box.top >= 0.0 && box.right <= scale_.width && box.low <= scale_.height)) return false;
     const auto overlaps = [&](const Box& other) {
       return box.left < other.right && other.left < box.right && box.top < other.low && other.top < box.low;
@@ -143,11 +205,13 @@ class Names {
     const auto contains = [&](const Eigen::Vector2d& at) {
       return box.left <= at.x() && at.x() <= box.right && box.top <= at.y() && at.y() <= box.low;
     };
-    return std::ranges::none_of(taken_, overlaps) && (over_lines || std::ranges::none_of(on_lines_, contains));
+    return std::ranges::none_of(names_, overlaps) &&
+           (covers >= Covers::Kept || std::ranges::none_of(kept_, overlaps)) &&
+           (covers >= Covers::Lines || std::ranges::none_of(on_lines_, contains));
   }
 
   void write(const std::string& text, const Box& box, const char* colour) {
-    taken_.push_back(box);
+    names_.push_back(box);
     svg_.words({{"x", box.left},
                 {"y", box.low - 2.0},
                 {"fill", colour},
@@ -160,7 +224,7 @@ class Names {
 
   Svg& svg_;
   const MapScale& scale_;
-  std::vector<Box> taken_;
+  std::vector<Box> kept_, names_;
   std::vector<Eigen::Vector2d> on_lines_;  // points of lines [px]
 };
 
@@ -191,6 +255,21 @@ void draw_objects(Svg& svg, const Outlines& objects, const MapScale& scale) {
   }
 }
 
+/// Whether a screen is an object, too, as a road of the same name: its name is written once.
+bool is_object(const std::string& name, const std::vector<Eigen::Vector2d>& line, const Outlines& objects,
+               const MapScale& scale) {
+  constexpr double kSame = 5.0;  // [px]
+  const auto is_at = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return (a - b).norm() * scale.per_metre < kSame;
+  };
+  return std::ranges::any_of(objects.list, [&](const Outline& object) {
+    const auto& places = object.places;
+    if (object.name != name || object.closed || places.size() < 2 || line.empty()) return false;
+    return (is_at(line.front(), places.front()) && is_at(line.back(), places.back())) ||
+           (is_at(line.front(), places.back()) && is_at(line.back(), places.front()));
+  });
+}
+
 void write_names(Svg& svg, const RunFacts& run, const Outlines& objects, const MapScale& scale) {
   constexpr std::size_t kMostNames = 40;
   const bool few = objects.list.size() <= kMostNames;
@@ -206,14 +285,15 @@ void write_names(Svg& svg, const RunFacts& run, const Outlines& objects, const M
     else if (few)
       names.keep_free(box_around(object.places, scale));
   for (const Outline& object : objects.list)
-    if (few)
-      names.put(object.name,
-                is_line(object) ? boxes_at(object.places, scale) : std::vector{box_around(object.places, scale)},
-                kObjectColour);
+    if (few && is_line(object))
+      names.put_at_line(object.name, object.places, kObjectColour);
+    else if (few)
+      names.put(object.name, {box_around(object.places, scale)}, kObjectColour);
   for (const Screen& screen : run.screens)
-    for (const auto& line : screen.lines) names.put(screen.id, boxes_at(line, scale), kScreenColour);
+    for (const auto& line : screen.lines)
+      if (!few || !is_object(screen.id, line, objects, scale)) names.put_at_line(screen.id, line, kScreenColour);
   for (const StandingBarrier& barrier : run.barriers)
-    for (const auto& line : barrier.line.lines) names.put(barrier.line.id, boxes_at(line, scale), kBarrierColour);
+    for (const auto& line : barrier.line.lines) names.put_at_line(barrier.line.id, line, kBarrierColour);
 }
 
 /// Ticks with coordinates at the lower and the left rim.
@@ -284,6 +364,11 @@ double MapScale::drawing_height() const {
   return std::max(height, kLowestDrawing);
 }
 
+std::string css_colour(const Colour& colour) {
+  return "rgb(" + std::to_string(colour.red) + "," + std::to_string(colour.green) + "," + std::to_string(colour.blue) +
+         ")";
+}
+
 std::string tenth(double value) {
   return with_decimals(value, 1);
 }
@@ -295,17 +380,18 @@ Markup& set_attribute(Markup& to, const char* name, const std::string& value) {
 Markup furniture(const MapSheet& sheet, const RunFacts& run, const MapImprint& imprint, const MapScale& scale) {
   Svg svg;
   double y = scale.drawing_height() - 132.0;
-  const auto key = [&](const char* colour, const char* dashes, const std::string& text) {
+  const auto key = [&](const std::string& colour, const char* dashes, const std::string& text, int width = 2) {
     svg.element("line", {{"x1", 0},
                          {"x2", 22},
                          {"y1", y - 4.0},
                          {"y2", y - 4.0},
                          {"stroke", colour},
-                         {"stroke-width", 2},
+                         {"stroke-width", width},
                          {"stroke-dasharray", dashes}});
     svg.words({{"x", 28}, {"y", y}}, text);
     y -= 16.0;
   };
+  if (!sheet.cut_short.empty()) key(css_colour(sheet.cut.colour), "none", sheet.cut.label, 6);
   if (!sheet.objects.list.empty()) key(kObjectColour, "none", "objects");
   if (!run.screens.empty()) key(kScreenColour, "7 3", "screens");
   if (!run.barriers.empty()) key(kBarrierColour, "none", "barriers of the run");
@@ -342,6 +428,7 @@ Markup outlines(const MapSheet& sheet, const RunFacts& run, const MapScale& scal
     set_attribute(group, "d", rim);
     group += "/>\n";
   }
+  group += squares_of(sheet.cut_short, sheet.cut, sheet, scale);
   Svg svg;
   draw_objects(svg, sheet.objects, scale);
   for (const Screen& screen : run.screens) draw_lines(svg, screen, kScreenColour, "7 3", scale);

@@ -25,12 +25,14 @@ struct MapScale {
   double drawing_height() const;
 };
 
+/// "rgb(195,15,165)".
+std::string css_colour(const Colour& colour);
 /// A length in a drawing, to a tenth of a pixel.
 std::string tenth(double value);
 /// Adds an attribute to an open tag; its value is escaped.
 Markup& set_attribute(Markup& to, const char* name, const std::string& value);
 
-/// The group `outlines`: source cells, screens, objects, coordinates.
+/// The group `outlines`: source cells, pixels from which paths leave the map, screens, objects, coordinates.
 Markup outlines(const MapSheet& sheet, const RunFacts& run, const MapScale& scale);
 /// The group `furniture`: key of the outlines, scale bar, arrow to the north, where and when.
 Markup furniture(const MapSheet& sheet, const RunFacts& run, const MapImprint& imprint, const MapScale& scale);

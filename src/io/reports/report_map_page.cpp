@@ -1,6 +1,7 @@
 #include "report_map_page.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 #include "io/files/json.hpp"
 #include "svg.hpp"
@@ -48,19 +49,42 @@ std::string unit_words(const ReportMap& map) {
   return map.unit == "1" ? " [%]" : " [" + map.unit + "]";
 }
 
+constexpr double kLegendLine = 14.0;  // [px]
+
+/// The title of a legend, in lines that are as long as the legend is wide.
+std::vector<std::string> title_lines(const ReportMap& map) {
+  constexpr std::size_t kMostLetters = 36;  // bold ones
+  std::istringstream words(shortened(map.title + unit_words(map), 90));
+  std::vector<std::string> lines;
+  for (std::string word; words >> word;)
+    if (lines.empty() || lines.back().size() + 1 + word.size() > kMostLetters)
+      lines.push_back(word);
+    else
+      lines.back() += ' ' + word;
+  return lines;
+}
+
+/// The place of the first class below the title.
+double first_class(const ReportMap& map) {
+  return 8.0 + kLegendLine * static_cast<double>(std::max<std::size_t>(1, title_lines(map).size()));
+}
+
 /// The classes of a map as coloured fields with their labels.
 Markup legend(const ReportMap& map, std::size_t number, const MapScale& scale) {
   Svg svg;
-  svg.words({{"x", 0}, {"y", 12}, {"font-weight", "bold"}}, shortened(map.title + unit_words(map), 40));
-  double y = 22.0;
+  double y = 12.0;
+  for (const std::string& line : title_lines(map)) {
+    svg.words({{"x", 0}, {"y", y}, {"font-weight", "bold"}}, line);
+    y += kLegendLine;
+  }
+  y = first_class(map);
   for (const MapClass& one : map.style.classes) {
-    if (one.colour.opacity == 0 || y > kLowestDrawing - 206.0) continue;
+    if (one.colour.opacity == 0 || y > kLowestDrawing - 222.0) continue;
     svg.element("rect", {{"x", 0},
                          {"y", y},
                          {"width", 24},
                          {"height", 14},
-                         {"fill", "rgb(" + std::to_string(one.colour.red) + "," + std::to_string(one.colour.green) +
-                                      "," + std::to_string(one.colour.blue) + ")"},
+                         {"fill", css_colour(one.colour)},
                          {"fill-opacity", "0.8"},
                          {"stroke", "#555"},
                          {"stroke-width", "0.5"}});
@@ -112,8 +136,9 @@ Markup map_store(const MapSheet& sheet, const RunFacts& run, const MapImprint& i
 Markup map_viewer(const MapSheet& sheet) {
   if (sheet.maps.empty()) return {};
   const MapScale scale(sheet);
-  std::size_t most = 0;  // classes of a legend
-  for (const ReportMap& map : sheet.maps) most = std::max(most, map.style.classes.size());
+  double lowest = 0.0;  // end of the longest legend
+  for (const ReportMap& map : sheet.maps)
+    lowest = std::max(lowest, first_class(map) + 18.0 * static_cast<double>(map.style.classes.size()));
   Markup html =
       "<div class='screen'><h3>Compare two maps</h3>\n<p>Move the slider: left of it is the first map, right of it the "
       "second. Click on the map: the table shows the values of the cell there, of every map.</p>\n<p><label>Left "
@@ -143,8 +168,7 @@ Markup map_viewer(const MapSheet& sheet) {
   set_attribute(html, "style", "margin:0;width:" + tenth(scale.width) + "px;max-width:100%");
   html += "></p>\n<svg ";
   set_attribute(html, "viewBox",
-                tenth(scale.width + kLegendGap) + " 0 " + tenth(2.0 * kLegendWidth + 60.0) + " " +
-                    std::to_string(22 + 18 * most));
+                tenth(scale.width + kLegendGap) + " 0 " + tenth(2.0 * kLegendWidth + 60.0) + " " + tenth(lowest));
   set_attribute(html, "width", tenth(2.0 * kLegendWidth + 60.0));
   html += ">"_html + use("legend-0", "legend-a") + "<g transform='translate(260 0)'>" + use("legend-0", "legend-b") +
           "</g></svg>";

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "io/files/checksum.hpp"
 #include "packed_map.hpp"
 #include "talus/base/bounds.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
+#include "talus/io/results/style.hpp"
+#include "talus/products/hazard_table.hpp"
 
 namespace talus::io {
 namespace {
@@ -157,6 +160,29 @@ void add_map(const fs::path& folder, const std::string& name, const Shown& shown
   sheet.maps.push_back(std::move(map));
 }
 
+const Map::Mark& mark_of_classes(const std::string& band) {
+  for (const HazardRaster& raster : hazard_rasters())
+    for (const Map::Mark& mark : raster.map.marks)
+      if (mark.band == band) return mark;
+  throw std::logic_error("no mark " + band);
+}
+
+MapClass class_of_mark(const Map::Mark& mark) {
+  const auto [red, green, blue] = channels_of(mark.colour);
+  const auto byte = [](int value) { return static_cast<std::uint8_t>(value); };
+  return {1.0, mark.label, {byte(red), byte(green), byte(blue)}};
+}
+
+/// Where paths leave the map: drawn over all maps.
+void add_cut_short(const fs::path& folder, const RunFacts& run, MapSheet& sheet) {
+  const fs::path file = folder / "hazard_class.tif";
+  const MapRaster cut(file.string(), std::string("cut short"));
+  check_grid(file, cut, run.grid);
+  for (const double value : cut.pixels(sheet.window, PixelValue::Largest)) sheet.cut_short.push_back(value > 0.0);
+  if (std::ranges::count(sheet.cut_short, 1) == 0) sheet.cut_short.clear();
+  sheet.cut = class_of_mark(mark_of_classes("cut short"));
+}
+
 /// Where the classes at the two bounds of the frequency differ: a map of its own.
 void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet) {
   const fs::path file = folder / "hazard_class.tif";
@@ -178,7 +204,7 @@ void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet)
   ReportMap map{"hazard_class_undecided", "Class not decided", "1", {}, {}, {}};
   map.file = "hazard_class.tif, band undecided";
   map.style = {
-      undecided.band(), true, {{0.0, "decided", {200, 200, 200}}, {1.0, "not decided by so few blocks", {213, 94, 0}}}};
+      undecided.band(), true, {{0.0, "decided", {200, 200, 200}}, class_of_mark(mark_of_classes("undecided"))}};
   map.classes_only = true;
   map.in_print = open > 0.0;
   map.picture = picture_of(values, sheet.window.width(), map.style);
@@ -210,8 +236,10 @@ MapSheet read_sheet(const fs::path& folder, const RunFacts& run, const NamedFile
       else
         sheet.notes.push_back(name + ".tif: is not shown, as there are " + std::to_string(kMostMaps) + " maps already");
     }
-  if (const std::string classes = "hazard_class.tif"; named.contains(classes) && fs::exists(folder / classes))
+  if (const std::string classes = "hazard_class.tif"; named.contains(classes) && fs::exists(folder / classes)) {
     add_undecided(folder, run, sheet);
+    add_cut_short(folder, run, sheet);
+  }
   return sheet;
 }
 

@@ -39,8 +39,10 @@ struct MapSheet {
   std::string relief_note;                                       ///< why there is none
   std::string copyright;                                         ///< as the file of the DEM states it
   std::vector<ReportMap> maps;
-  std::vector<std::uint8_t> sources;  ///< pixels from which blocks are released; empty if not known
-  std::optional<double> undecided;    ///< share of the pixels with a class where it is not decided
+  std::vector<std::uint8_t> sources;    ///< pixels from which blocks are released; empty if not known
+  std::vector<std::uint8_t> cut_short;  ///< pixels from which paths leave the map; empty if not known, or if none do
+  MapClass cut;                         ///< their look
+  std::optional<double> undecided;      ///< share of the pixels with a class where it is not decided
   Outlines objects;
   std::vector<std::string> notes;  ///< what is left out, and why
 };

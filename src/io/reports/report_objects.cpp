@@ -141,6 +141,18 @@ std::string class_text(const ObjectsPart::Object& object, const std::vector<std:
   return name(object.hazard_class) + (low == high ? "" : " [" + low + " to " + high + "]");
 }
 
+/// The three sources with the largest shares, which are the first: "cliff 39 37.7 %; cliff 31 21.9 %; cliff 34 7.33 %;
+/// and 17 more".
+std::string largest_sources(const std::string& sources) {
+  constexpr std::size_t kMostSources = 3;
+  constexpr std::string_view kEnd = " %; ";  // of one before another; "; " alone may be a part of a name
+  std::size_t count = 1, end = 0;
+  for (std::size_t at = 0; (at = sources.find(kEnd, at)) != std::string::npos; at += kEnd.size())
+    if (count++ == kMostSources) end = at + kEnd.size();
+  if (end == 0) return shortened(sources, 300);
+  return shortened(sources.substr(0, end), 280) + "and " + std::to_string(count - kMostSources) + " more";
+}
+
 Markup object_row(const ObjectsPart::Object& object, const std::vector<std::string>& classes) {
   const bool part = !object.high;
   Markup row =
@@ -151,7 +163,7 @@ Markup object_row(const ObjectsPart::Object& object, const std::vector<std::stri
       years_text(object.frequency, object.low, object.high) + "</td>";
   for (const std::string& years : object.years) row += "<td class='n'>"_html + years + "</td>";
   if (!classes.empty()) row += "<td>"_html + class_text(object, classes) + "</td>";
-  return row + "<td>" + shortened(object.sources, 300) + "</td></tr>\n";
+  return row + "<td>" + largest_sources(object.sources) + "</td></tr>\n";
 }
 
 void add_object(const CsvTable& table, const CsvTable::Row& row, ObjectsPart& part) {
@@ -227,10 +239,13 @@ Markup objects_html(const ObjectsPart& part, bool pieces, const std::vector<std:
       "The map \"Hazard class\" has that of each cell: the longer an object, "
       "the more often it is hit, and its class may be higher than that of every cell. To compare parts of a road, cut "
       "it into sections of one length. A block counts for each object that it hits, for both of two sections at their "
-      "border: do not add up their frequencies.</p>\n"_html;
+      "border: do not add up their frequencies. The last column names the three sources that hit it most, with their "
+      "shares of the hits; all are in objects_sources.csv.</p>\n"_html;
   if (part.with_rotation) html += "<p>Energies and classes of objects count the rotation.</p>\n";
   if (pieces) html += "<p>Blocks broke, and "_html + kHitsOfPieces + ".</p>\n";
-  html += "<div class='wide'><table><tr><th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
+  constexpr std::size_t kFew = 3;  // thresholds
+  html += "<div class='wide'><table class='objects"_html + (part.thresholds.size() > kFew ? " many" : "");
+  html += "'><tr><th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
   for (const std::string& energy : part.thresholds) html += "<th>above "_html + energy + " kJ once in [years]</th>";
   if (!classes.empty()) html += "<th>class</th>"_html;
   html += "<th>from</th></tr>\n";

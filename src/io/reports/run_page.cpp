@@ -150,11 +150,11 @@ std::string between(const std::vector<double>& limits, std::size_t number, const
 Markup classes_html(const HazardFacts& hazard, bool with_rotation) {
   if (hazard.classes.empty() || hazard.energies.empty() || hazard.years.empty()) return {};
   Markup html =
-      "<h3>Classes of hazard</h3>\n<p>For "_html + hazard.object +
+      "<h3>Classes of hazard</h3>\n<p class='before'>For "_html + hazard.object +
       ", by how often it is hit with more than the energy of a row: that with which blocks pass the place. The highest "
       "class of the rows counts. A table of objects takes the largest energy within each outline, which is "
       "higher.</p>\n"
-      "<table><tr><th>";
+      "<table class='whole'><tr><th>";
   html += energy_words(with_rotation).name;
   html += ", return period</th>";
   for (std::size_t k = 0; k < hazard.classes.front().size(); ++k)

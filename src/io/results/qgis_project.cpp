@@ -14,6 +14,7 @@
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/gdal/layer_name.hpp"
+#include "talus/io/results/style.hpp"
 #include "talus/io/results/vector_style.hpp"
 #include "talus/products/energy_words.hpp"
 #include "talus/products/raster_table.hpp"
@@ -34,6 +35,7 @@ struct Shown {
   std::string id, title, source;
   Source kind = Source::Map;
   bool checked = false;
+  bool mark = false;  // drawn over a map
   std::string wkt{};  // of a layer in a system of its own
   XmlTree style{nullptr, CPLDestroyXMLNode};
 };
@@ -114,8 +116,7 @@ Shown lines_of(Shown& objects) {
   return lines;
 }
 
-std::string style_beside(const fs::path& layer) {
-  const fs::path file = fs::path(layer).replace_extension(".qml");
+std::string style_of_file(const fs::path& file) {
   try {
     return read_file(file.string(), file.string(), "a style of QGIS", kMostStyle);
   } catch (const InputError&) {
@@ -142,6 +143,7 @@ std::string title_of_design(const fs::path& record, const ProjectLayer& layer, s
 std::vector<std::pair<std::string, std::string>> titles_of(const std::vector<std::string>& files,
                                                            const fs::path& folder, const ProjectLayer& layer) {
   std::vector<std::pair<std::string, std::string>> found;
+  if (!layer.style.empty() && std::ranges::find(files, layer.style) == files.end()) return found;
   for (const std::string& name : files) {
     auto title = title_of(name, layer);
     if (!title) continue;
@@ -178,16 +180,22 @@ std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs:
   std::vector<Shown> shown;
   for (const ProjectLayer& layer : project_layers())
     for (const auto& [title, name] : titles_of(files, folder, layer)) {
-      const std::string stem = fs::path(name).stem().string();
-      Shown one{id_of(stem, kind_of(layer.file)), title_in_run(title, layer, settings), "./" + name,
-                kind_of(layer.file), layer.shown};
+      const bool mark = !layer.style.empty();
+      const fs::path style = mark ? fs::path(layer.style) : fs::path(name).replace_extension(".qml");
+      const std::string stem = (mark ? style : fs::path(name)).stem().string();
+      Shown one{id_of(stem, kind_of(layer.file)),
+                title_in_run(title, layer, settings),
+                "./" + name,
+                kind_of(layer.file),
+                layer.shown,
+                mark};
       if (name.ends_with(".gpkg")) {
         one.source += "|layername=" + stem;
         one.style = parsed_xml(style_in(folder / name, stem));
       } else if (one.kind == Source::Table) {
         one.source += "|option:AUTODETECT_TYPE=YES";
       } else {
-        one.style = parsed_xml(style_beside(folder / name));
+        one.style = parsed_xml(style_of_file(folder / style));
       }
       if (stem == "objects" && has_lines_beside_areas(folder / name, stem)) shown.push_back(lines_of(one));
       shown.push_back(std::move(one));
@@ -195,11 +203,11 @@ std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs:
   return shown;
 }
 
-/// Leaves one map on: the hazard class, which is the first.
+/// Leaves one map on, with the marks over it: the hazard class, which is the first.
 void check_one_map(std::vector<Shown>& shown) {
   bool found = false;
   for (Shown& one : shown) {
-    if (one.kind != Source::Map) continue;
+    if (one.kind != Source::Map || one.mark) continue;
     one.checked = one.checked && !found;
     found = found || one.checked;
   }
@@ -384,6 +392,9 @@ const std::vector<ProjectLayer>& project_layers() {
       {"stops.gpkg", "Stops: largest energy of the path"},
       {"trajectories.gpkg", "Paths: largest speed"},
       {"barriers.csv", "Barriers of the run: counts by stretch"},
+      {"hazard_class.tif", "Hazard goes on beyond the map (cut short)", true, false,
+       mark_style_name("hazard_class", "cut short")},
+      {"hazard_class.tif", "Class undecided", false, false, mark_style_name("hazard_class", "undecided")},
       {"hazard_class.tif", "Hazard class", true, true},
       {"annual_frequency.tif", "Blocks per year"},
       {"return_period_<n>.tif", "Return period of more than <n> kJ", false, true},

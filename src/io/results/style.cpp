@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "io/gdal/map_raster.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/results/class_names.hpp"
@@ -46,13 +47,16 @@ const Colours& colours(Palette palette) {
   throw std::logic_error("a palette without colours");
 }
 
-/// The number of the band that is shown, from 1.
-std::size_t shown_band(const Map& map) {
-  if (map.legend.band.empty()) return 1;
-  const auto found =
-      std::ranges::find_if(map.bands, [&map](const Map::Band& band) { return band.name == map.legend.band; });
-  if (found == map.bands.end()) throw std::logic_error(map.name + " has no band " + map.legend.band);
+/// The number of a band, from 1.
+std::size_t number_of_band(const Map& map, const std::string& name) {
+  const auto found = std::ranges::find(map.bands, name, &Map::Band::name);
+  if (found == map.bands.end()) throw std::logic_error(map.name + " has no band " + name);
   return static_cast<std::size_t>(found - map.bands.begin()) + 1;
+}
+
+/// The number of the band that is shown.
+std::size_t shown_band(const Map& map) {
+  return map.legend.band.empty() ? 1 : number_of_band(map, map.legend.band);
 }
 
 /// A limit in a label: never with an exponent.
@@ -94,12 +98,17 @@ void add_items(const Element& shader, const Map& map) {
   for (const LegendClass& item : classes_of(map)) add_item(shader, item, 255);
 }
 
-void add_renderer(const Element& pipe, const Map& map) {
-  const std::string maximum = text_of(map.legend.limits.back());
+Element add_renderer(const Element& pipe, const char* type, std::size_t band, const char* opacity) {
   const Element renderer = pipe.add("rasterrenderer");
-  renderer.set("type", "singlebandpseudocolor").set("band", std::to_string(shown_band(map))).set("opacity", "0.8");
-  renderer.set("alphaBand", "-1").set("nodataColor", "").set("classificationMin", "0");
-  renderer.set("classificationMax", maximum).add("rasterTransparency");
+  renderer.set("type", type).set("band", std::to_string(band)).set("opacity", opacity);
+  renderer.set("alphaBand", "-1").set("nodataColor", "");
+  return renderer;
+}
+
+void add_classes(const Element& pipe, const Map& map) {
+  const std::string maximum = text_of(map.legend.limits.back());
+  const Element renderer = add_renderer(pipe, "singlebandpseudocolor", shown_band(map), "0.8");
+  renderer.set("classificationMin", "0").set("classificationMax", maximum).add("rasterTransparency");
   const Element origin = renderer.add("minMaxOrigin");
   origin.add("limits", "None");
   origin.add("extent", "WholeRaster");
@@ -108,6 +117,19 @@ void add_renderer(const Element& pipe, const Map& map) {
   shader.set("colorRampType", "DISCRETE").set("classificationMode", "1").set("clip", "0").set("minimumValue", "0");
   shader.set("maximumValue", maximum);
   add_items(shader, map);
+}
+
+/// A style around its renderer, which `add` makes.
+template <class Add>
+std::string raster_style(Add add) {
+  const QgisDocument document;
+  const Element pipe = document.root().set("styleCategories", "Symbology").add("pipe");
+  add(pipe);
+  pipe.add("brightnesscontrast").set("brightness", "0").set("contrast", "0");
+  pipe.add("huesaturation").set("saturation", "0").set("grayscaleMode", "0").set("colorizeOn", "0");
+  pipe.add("rasterresampler").set("maxOversampling", "2");
+  document.root().add("blendMode", "0");
+  return document.text();
 }
 
 }  // namespace
@@ -140,20 +162,30 @@ std::vector<LegendClass> classes_of(const Map& map) {
 
 std::string style_of(const Map& map) {
   if (map.legend.limits.empty()) throw std::logic_error(map.name + " has no legend");
-  const QgisDocument document;
-  const Element pipe = document.root().set("styleCategories", "Symbology").add("pipe");
-  add_renderer(pipe, map);
-  pipe.add("brightnesscontrast").set("brightness", "0").set("contrast", "0");
-  pipe.add("huesaturation").set("saturation", "0").set("grayscaleMode", "0").set("colorizeOn", "0");
-  pipe.add("rasterresampler").set("maxOversampling", "2");
-  document.root().add("blendMode", "0");
-  return document.text();
+  return raster_style([&map](const Element& pipe) { add_classes(pipe, map); });
+}
+
+std::string style_of(const Map& map, const Map::Mark& mark) {
+  return raster_style([&](const Element& pipe) {
+    const Element renderer = add_renderer(pipe, "paletted", number_of_band(map, mark.band), "1");
+    renderer.add("rasterTransparency");
+    const Element entry = renderer.add("colorPalette").add("paletteEntry");
+    entry.set("value", "1").set("color", mark.colour).set("alpha", "255").set("label", mark.label);
+  });
+}
+
+std::string mark_style_name(const std::string& map, std::string band) {
+  std::ranges::replace(band, ' ', '_');
+  return map + "_" + band + ".qml";
 }
 
 void write_style(const std::filesystem::path& folder, const Map& map) {
   write_text(folder / (map.name + ".qml"), style_of(map));
   if (const std::string names = class_names_of(map); !names.empty())
     write_text(folder / (map.name + ".tif.aux.xml"), names);
+  for (const Map::Mark& mark : map.marks)
+    if (MapRaster((folder / (map.name + ".tif")).string(), mark.band).any_positive())
+      write_text(folder / mark_style_name(map.name, mark.band), style_of(map, mark));
 }
 
 }  // namespace talus::io

@@ -23,7 +23,7 @@ struct Look {
   std::string value;  ///< expression of QGIS for what the colour shows
   Legend legend;
   double smallest, largest;  ///< size or width in the first and the last class [mm]
-  std::string never = "";    ///< label of a grey class of its own for 1e99; empty: there is none
+  std::string never = "";    ///< label of a white class of its own for 1e99; empty: there is none
 };
 
 /// The legend of a raster, without its band.
@@ -51,7 +51,7 @@ constexpr const char* kReturnPeriod =
 /// The layer has no mass of each place.
 constexpr const char* kLargestEnergy = R"(0.0005 * "mass_kg" * "max_speed_ms" ^ 2)";
 
-constexpr const char* kNoHit = "no hit per year";  // of no block, or of blocks of sources with a frequency of 0
+constexpr const char* kNoHit = "no hit counted in this run";  // none, or of blocks of sources with a frequency of 0
 constexpr const char* kNoCrossing = "no crossing";
 constexpr const char* kNoDesign = "too few crossings for a design";
 
@@ -102,25 +102,37 @@ void add_options(const Element& layer, const std::vector<std::pair<const char*, 
 }
 
 constexpr const char* kDark = "35,35,35,255";  // of outlines: seen on light colours and on a hillshade
+constexpr const char* kWhite = "#ffffff";      // of what has no class; no class has it
 
-/// @param rgb  of the inside; empty: an outline alone
+void add_line(const Element& layer, const std::string& colour, double width) {
+  add_options(layer, {{"line_color", colour},
+                      {"line_width", text_of(width)},
+                      {"line_width_unit", "MM"},
+                      {"capstyle", "round"},
+                      {"joinstyle", "round"},
+                      {"line_style", "solid"}});
+}
+
+/// @param rgb  of the inside; empty: an outline alone. White has a wide outline: it is seen on a hillshade, too.
 void add_symbol(const Element& symbols, Symbol shape, std::size_t number, const std::string& rgb, double size) {
+  constexpr double kRim = 0.4;  // of white on each side [mm]
   static constexpr std::array<const char*, 3> kTypes{"marker", "line", "fill"};
   static constexpr std::array<const char*, 3> kLayers{"SimpleMarker", "SimpleLine", "SimpleFill"};
   const auto kind = static_cast<std::size_t>(shape);
   const Element symbol = symbols.add("symbol");
   symbol.set("type", kTypes[kind]).set("name", std::to_string(number)).set("alpha", "1");
   symbol.set("clip_to_extent", "1").set("force_rhr", "0");
-  const Element layer = symbol.add("layer");
-  layer.set("class", kLayers[kind]).set("enabled", "1").set("locked", "0").set("pass", "0");
+  const auto add_layer = [&] {
+    const Element layer = symbol.add("layer");
+    layer.set("class", kLayers[kind]).set("enabled", "1").set("locked", "0").set("pass", "0");
+    return layer;
+  };
+  if (shape == Symbol::Line && rgb == kWhite) add_line(add_layer(), kDark, size + 2.0 * kRim);
+  if (shape == Symbol::Area && rgb == kWhite) size += kRim;
+  const Element layer = add_layer();
   const std::string colour = rgb.empty() ? "0,0,0,0" : colour_text(rgb), width = text_of(size);
   if (shape == Symbol::Line)
-    add_options(layer, {{"line_color", rgb.empty() ? kDark : colour},
-                        {"line_width", width},
-                        {"line_width_unit", "MM"},
-                        {"capstyle", "round"},
-                        {"joinstyle", "round"},
-                        {"line_style", "solid"}});
+    add_line(layer, rgb.empty() ? kDark : colour, size);
   else if (shape == Symbol::Point)
     add_options(layer, {{"name", "circle"},
                         {"color", colour},
@@ -149,7 +161,7 @@ void add_renderer(const Element& root, const Look& look) {
   std::vector<LegendClass> classes = classes_of(look.legend, false);
   if (!look.never.empty()) {
     classes.back().limit = kLongest;
-    classes.push_back({kMost, look.never, "#bdbdbd"});
+    classes.push_back({kMost, look.never, kWhite});
   }
   double low = 0.0;
   for (std::size_t i = 0; i < classes.size(); ++i) {

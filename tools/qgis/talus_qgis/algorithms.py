@@ -93,6 +93,17 @@ def key_of(name):
     return name.upper().replace("-", "_")
 
 
+def _rest_of(text):
+    """What comes after the first part of a text; brackets belong together."""
+    for ends in (";:", ","):
+        depth = 0
+        for i, letter in enumerate(text):
+            depth += (letter in "([") - (letter in ")]")
+            if depth == 0 and letter in ends:
+                return text[i + 1:].strip()
+    return ""
+
+
 def _is_number(text):
     """Whether QGIS reads a text as the number that it is: with a decimal point, whatever the language."""
     try:
@@ -151,7 +162,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         lines = [tr("about " + self.table["id"])]
         for p in self.described():
             if p["name"] not in NOT_IN_DIALOG:
-                lines.append(f"<b>{self._title(p)}</b>: {self._help(p)}")
+                lines.append(": ".join(filter(None, [f"<b>{self._title(p)}</b>", self._help(p)])))
         if self.table.get("fields"):
             lines.append(tr("A field of the sources that is named diameter, diameter_min, diameter_max, release_height, "
                             "frequency or name is read where no field is picked for it."))
@@ -246,8 +257,18 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
     def _help(self, p):
         several = p["name"] in self.table.get("several", ())
         low = p["bounds"].get("low", 0)
-        least = ". " + tr("At least {value}.").format(value=low) if p["type"] == "integer" and low > 1 else ""
-        return tr(p["text"]) + least + (". " + tr("Several layers, as a road and houses, are joined into one.") if several else "")
+        text = tr(p["text"])
+        if re.match("(of|per|that|how many) ", p["text"]):  # goes on where the name of the option ends, as the label says it
+            text = _rest_of(text)
+        least = tr("At least {value}.").format(value=low) if p["type"] == "integer" and low > 1 else ""
+        joined = tr("Several layers, as a road and houses, are joined into one.") if several else ""
+        return ". ".join(filter(None, [self._with_labels(text), least, joined]))
+
+    def _with_labels(self, text):
+        """A text of the program with the names that the dialog has for its flags."""
+        labels = {flag: self._label(p) for p in self.described() if p["name"] not in NOT_IN_DIALOG for flag in p["flags"]}
+        return re.sub(r"--[a-z][a-z-]*", lambda flag: tr("\"{field}\"").format(field=labels[flag[0]]) if flag[0] in labels else flag[0],
+                      text)
 
     def _label(self, p):
         name = self.table.get("labels", {}).get(p["name"], p["name"])
@@ -584,7 +605,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             plain, source = self.layers[key][0]
             if len(self.layers[key]) > 1:
                 plain, source = None, layers.Joined([source for _, source in self.layers[key]], context, feedback)
-            words.append(plain or layers.write_vector(source, inputs, p["name"] + ".gpkg", context, feedback))
+            own_fields = p["name"] in self.table.get("several", ())  # the results have a field fid of their own
+            words.append(plain or layers.write_vector(source, inputs, p["name"] + ".gpkg", context, feedback, own_fields))
         raster = self.layers.get(key + "_RASTER" if p["name"] in self.table.get("raster too", ()) else key)
         if "raster" in p["holds"] and raster:
             if words:

@@ -13,10 +13,11 @@ import os
 import shutil
 import tempfile
 from contextlib import contextmanager
+from itertools import filterfalse
 
 from osgeo import gdal
 from qgis.core import (QgsCoordinateTransform, QgsCsException, QgsFeature, QgsFeatureRequest, QgsFeatureSink, QgsField,
-                       QgsFields, QgsProcessingException, QgsProcessingFeatureSourceDefinition, QgsProviderRegistry,
+                       QgsFieldConstraints, QgsFields, QgsProcessingException, QgsProcessingFeatureSourceDefinition, QgsProviderRegistry,
                        QgsRasterLayer, QgsRasterRange, QgsVectorFileWriter, QgsVectorLayer, QgsWkbTypes)
 from qgis.PyQt.QtCore import Qt, QVariant
 
@@ -140,14 +141,16 @@ def refuse_without_system(source):
         raise QgsProcessingException(tr(NO_SYSTEM).format(name=source.sourceName()))
 
 
-def write_vector(source, inputs, file, context, feedback):
-    """Writes the features of a source, with their CRS, into a GeoPackage; equal features give equal bytes."""
+def write_vector(source, inputs, file, context, feedback, own_fields=False):
+    """Writes the features of a source, with their CRS, into a GeoPackage; equal features give equal bytes.
+
+    own_fields: without the numbers (FID) of features that QGIS shows as a field fid, though it is none of the file."""
     refuse_without_system(source)
     with _kept(inputs, os.path.splitext(file)[0]) as (fresh, place):
         dated = gdal.GetThreadLocalConfigOption("OGR_CURRENT_DATE")  # of this thread alone: QGIS goes on writing in others
         gdal.SetThreadLocalConfigOption("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z")  # not the time of writing
         try:
-            count = _write_features(source, os.path.join(fresh, file), context, feedback)
+            count = _write_features(source, os.path.join(fresh, file), context, feedback, own_fields)
         finally:
             gdal.SetThreadLocalConfigOption("OGR_CURRENT_DATE", dated)
         if count == 0:
@@ -200,7 +203,7 @@ class Joined:
     def fields(self):
         found = {}
         for source in self.sources:
-            for field in distinct(source.fields()):
+            for field in filterfalse(_is_number_of_feature, distinct(source.fields())):
                 first = found.get(field.name().lower())
                 found[field.name().lower()] = (first[0], _common_type(first[1], field)) if first else (field.name(),
                                                                                                      field.type())
@@ -227,6 +230,13 @@ class Joined:
                 yield copy
             if not any_feature:
                 raise _no_feature(source)
+
+
+def _is_number_of_feature(field):
+    """Whether a field is none of the file, but the number that it has for each feature."""
+    constraints = field.constraints()
+    return (field.name().lower() == "fid" and
+            constraints.constraintOrigin(QgsFieldConstraints.ConstraintUnique) == QgsFieldConstraints.ConstraintOriginProvider)
 
 
 def _common_type(kind, field):
@@ -292,13 +302,17 @@ def _tell_renamed(source, feedback):
                                     "only").format(name=source.sourceName(), before=before.name(), after=after.name()))
 
 
-def _write_features(source, path, context, feedback):
+def _write_features(source, path, context, feedback, own_fields):
     """Writes the features under the numbers (FID) that QGIS shows: where a layer has no ids and no names, the program calls
     features by them."""
     numbered = _are_numbered(source, feedback)
     for one in source.sources if isinstance(source, Joined) else [source]:
         _tell_renamed(one, feedback)
-    fields = distinct(source.fields())
+    whole = distinct(source.fields())
+    columns = [i for i, field in enumerate(whole) if not (own_fields and _is_number_of_feature(field))]
+    fields = QgsFields()
+    for i in columns:
+        fields.append(whole[i])
     column = _free_name("talus_fid", fields)  # a field fid of the layer stays a field, and so does a field geom
     geometry = _free_name("geom", fields)
     if numbered:
@@ -316,7 +330,8 @@ def _write_features(source, path, context, feedback):
         for feature in source.getFeatures():
             _stop_if_cancelled(feedback)
             copy = QgsFeature(fields)
-            copy.setAttributes(feature.attributes() + ([feature.id()] if numbered else []))
+            values = feature.attributes()
+            copy.setAttributes([values[i] for i in columns] + ([feature.id()] if numbered else []))
             copy.setGeometry(feature.geometry())
             if not writer.addFeature(copy, QgsFeatureSink.FastInsert):
                 raise QgsProcessingException(f"{path}: {writer.errorMessage()}")

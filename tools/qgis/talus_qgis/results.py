@@ -5,11 +5,13 @@ import re
 from contextlib import contextmanager
 
 from qgis.core import (Qgis, QgsFillSymbol, QgsGraduatedSymbolRenderer, QgsHillshadeRenderer, QgsLayerTree, QgsLayerTreeGroup, QgsLineSymbol,
-                       QgsMapLayerLegendUtils, QgsMarkerSymbol, QgsProcessingContext,
+                       QgsMapLayerLegendUtils, QgsMarkerSymbol, QgsPalettedRasterRenderer, QgsProcessingContext,
                        QgsProcessingLayerPostProcessorInterface, QgsProject, QgsProviderRegistry,
-                       QgsRasterDataProvider, QgsRasterLayer, QgsRasterPipe, QgsRendererRange, QgsSingleBandPseudoColorRenderer, QgsSingleSymbolRenderer, QgsVectorLayer,
+                       QgsRasterDataProvider, QgsRasterLayer, QgsRasterPipe, QgsRendererRange, QgsSimpleLineSymbolLayer, QgsSingleBandPseudoColorRenderer,
+                       QgsSingleSymbolRenderer, QgsVectorLayer,
                        QgsWkbTypes)
 from qgis.PyQt.QtCore import QCoreApplication, Qt, QThread
+from qgis.PyQt.QtGui import QColor
 
 from . import program
 from .texts import tr
@@ -20,6 +22,7 @@ TITLE_MARK = "talus/title"   # property of a layer: its title; its name may say 
 
 BELOW_ALL = 1e9  # rank of the hillshade
 LINES_OF_OBJECTS = "1.8"  # mm, as in src/io/results/vector_style.cpp
+NEVER = 1e97  # years; from here on an object is not hit
 TYPED = "|option:AUTODETECT_TYPE=YES"  # after the path of a table: its numbers are numbers
 ONE_KIND = "|geometrytype="  # in the source of a layer: one kind of geometry of a file that holds several
 
@@ -40,6 +43,8 @@ def _entry(name):
     """(place in the group, entry, what stands for <n> or <id>) of a file; None of one that is no result."""
     name = re.sub(r"\.fgb$", ".gpkg", name)
     for rank, entry in enumerate(_entries()):
+        if entry.get("style"):  # over the map of this file: `_marks_of`
+            continue
         before, blank, after = re.fullmatch(r"([^<]*)(<\w+>)?(.*)", entry["file"]).groups()
         word = {None: "()", "<n>": "([0-9.e+-]+)", "<id>": "(.+)"}[blank]
         found = re.fullmatch(re.escape(before) + word + re.escape(after), name)
@@ -151,9 +156,12 @@ def _apply_style_in_file(layer):
 
 def _in_lines(of_areas):
     """The same classes and colours for lines."""
-    classes = [QgsRendererRange(entry.lowerValue(), entry.upperValue(), QgsLineSymbol.createSimple(
-        {"line_color": entry.symbol().color().name(), "line_width": LINES_OF_OBJECTS}), entry.label())
-        for entry in of_areas.ranges()]
+    classes = []
+    for entry in of_areas.ranges():
+        line = QgsLineSymbol.createSimple({"line_color": entry.symbol().color().name(), "line_width": LINES_OF_OBJECTS})
+        if entry.lowerValue() >= NEVER:
+            line.insertSymbolLayer(0, QgsSimpleLineSymbolLayer(QColor("#232323"), float(LINES_OF_OBJECTS) + 0.8))
+        classes.append(QgsRendererRange(entry.lowerValue(), entry.upperValue(), line, entry.label()))
     return QgsGraduatedSymbolRenderer(of_areas.classAttribute(), classes)
 
 
@@ -208,6 +216,21 @@ def _outlines_of(folder):
     return outlines
 
 
+def _marks_of(folder):
+    """(layer, whether it is shown at first) of what lies over the hazard class, as talus.qgs has it: where the run has none,
+    the program has not written its style."""
+    for rank, entry in enumerate(_entries()):
+        style = os.path.join(folder, entry["style"]) if entry.get("style") else ""
+        if not os.path.exists(style):
+            continue
+        layer = QgsRasterLayer(os.path.join(folder, entry["file"]), tr(entry["title"]))
+        layer.loadNamedStyle(style)
+        _translate_legend(layer)
+        layer.setCustomProperty(RANK_MARK, rank)
+        layer.setCustomProperty(TITLE_MARK, layer.name())
+        yield layer, entry["shown"]
+
+
 def _rank(layer):
     return float(layer.customProperty(RANK_MARK, 0))
 
@@ -237,6 +260,10 @@ def _translate_legend(layer):
         if isinstance(layer.renderer(), QgsGraduatedSymbolRenderer):
             for i, entry in enumerate(layer.renderer().ranges()):
                 layer.renderer().updateRangeLabel(i, legend_text(entry.label()))
+        return
+    if isinstance(layer.renderer(), QgsPalettedRasterRenderer):
+        for one in layer.renderer().classes():
+            layer.renderer().setLabel(int(one.value), legend_text(one.label))
         return
     shader = layer.renderer().shader() if isinstance(layer.renderer(), QgsSingleBandPseudoColorRenderer) else None
     if shader is None:
@@ -366,8 +393,7 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
         group = self._group(project)
         shown = self.shown
         self._remove_layers_without_file(group)
-        if self._is_title_elsewhere(root, group, node.layerId()):  # so that a list of layers tells the two apart
-            node.layer().setName(f"{self.name} ({self._folder_among(root, group)})")
+        self._tell_from_others(node.layer(), root, group)
         for other in group.findLayers():
             layer = other.layer()
             if layer is None or layer.id() == node.layerId():
@@ -388,6 +414,25 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
         copy.setExpanded(shown)
         group.insertChildNode(place, copy)
         node.parent().removeChildNode(node)
+        if _is_hazard_class(copy.layer()):
+            self._add_marks(copy, project)
+
+    def _add_marks(self, node, project):
+        """Puts what lies over the hazard class above it."""
+        group = node.parent()
+        for layer, shown in _marks_of(self.folder):
+            self._tell_from_others(layer, project.layerTreeRoot(), group)
+            project.addMapLayer(layer, False)
+            mark = group.insertLayer(group.children().index(node), layer)
+            _leave_out_band(mark)
+            mark.setItemVisibilityChecked(shown)
+            mark.setExpanded(shown)
+
+    def _tell_from_others(self, layer, root, group):
+        """Names a layer with its folder, where another folder has one of the same title: a list of layers tells the two apart."""
+        title = layer.customProperty(TITLE_MARK)
+        if self._is_title_elsewhere(title, root, group, layer.id()):
+            layer.setName(f"{title} ({self._folder_among(root, group)})")
 
     @staticmethod
     def _remove_layers_without_file(group):
@@ -397,10 +442,11 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
             if layer is not None and layer.customProperty(TITLE_MARK) and not os.path.exists(layer.source().split("|")[0]):
                 layer.project().removeMapLayer(layer.id())
 
-    def _is_title_elsewhere(self, root, group, layer_id):
+    @staticmethod
+    def _is_title_elsewhere(title, root, group, layer_id):
         """Whether the results of another folder have a layer of this title. QGIS may have put the layer itself anywhere."""
         own = {node.layerId() for node in group.findLayers()} | {layer_id}
-        return any(other.layer() is not None and other.layer().customProperty(TITLE_MARK) == self.name
+        return any(other.layer() is not None and other.layer().customProperty(TITLE_MARK) == title
                    for results in root.findGroups() if results is not group
                    for other in results.findLayers() if other.layerId() not in own)
 

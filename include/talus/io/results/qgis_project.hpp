@@ -42,6 +42,7 @@ struct ProjectLayer {
   bool shown = false;          ///< at first; of the maps only one: the hazard class, if there is one
   bool counts_energy = false;  ///< its title says so where the run counts the energy with rotation
   std::string thresholds{};    ///< setting of the run, whose lowest number <threshold> is: "output.energy_thresholds"
+  std::string style{};         ///< of a mark over the map of the file; without this style there is no layer
 };
 /// What <threshold> is where the record of the run does not say it.
 inline constexpr const char* kUnknownThreshold = "the lowest threshold";

@@ -30,8 +30,13 @@ std::vector<LegendClass> classes_of(const Map& map);
 /// legend, or not the band that its legend shows.
 std::string style_of(const Map& map);
 
+/// The look of the cells that a band of a map marks: one colour, all others transparent.
+std::string style_of(const Map& map, const Map::Mark& mark);
+/// Name of the file of that style: "hazard_class_cut_short.qml" of the band `cut short`.
+std::string mark_style_name(const std::string& map, std::string band);
+
 /// Writes `NAME.qml` and, if there are names of classes, `NAME.tif.aux.xml` beside the raster, where QGIS and GDAL find
-/// them by themselves. Throws std::runtime_error.
+/// them by themselves; of each mark that the raster has in any cell its style, too. Throws std::runtime_error.
 void write_style(const std::filesystem::path& folder, const Map& map);
 
 }  // namespace talus::io
