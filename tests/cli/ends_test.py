@@ -1,4 +1,5 @@
 """How trajectories end: trapped between walls, out of the map; the maps, layers and warnings of it."""
+import json
 import os
 import re
 import unittest
@@ -100,6 +101,12 @@ class Ends(Case):
         self.run_well("hazard", self.path("out"), "-q")
         self.assertNotIn("hazard_class_cut_short.qml", os.listdir(self.path("out")))
         self.assertNotIn("cut short", self.read_text("out/talus.qgs"))
+        record = self.read_json("out/hazard.json")  # of an earlier command by whose frequencies some cell was marked
+        self.write("out/hazard_class_cut_short.qml", "<qgis/>")
+        self.write("out/hazard.json", json.dumps({**record, "files": record["files"] + ["hazard_class_cut_short.qml"]}))
+        done = self.run_well("hazard", self.path("out"), "--overwrite")
+        self.assertNotIn("removed", done.stderr)
+        self.assertNotIn("hazard_class_cut_short.qml", os.listdir(self.path("out")))
         self.run_well("report", self.path("out"), "-q")
         self.assertNotIn("cut-short", self.read_text("out/report.html"))
 

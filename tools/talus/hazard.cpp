@@ -17,6 +17,7 @@
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/hazard_record.hpp"
 #include "talus/io/results/objects_file.hpp"
+#include "talus/io/results/qgis_project.hpp"
 #include "talus/io/results/recorded_plan.hpp"
 #include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/run_record.hpp"
@@ -228,6 +229,15 @@ talus::io::ObjectFields object_fields(const HazardOptions& options) {
   return fields;
 }
 
+/// Files of an earlier command that this one has not made, but for the style of marks that no cell has now.
+std::vector<std::string> not_asked_for(const talus::io::StagedFiles& staged) {
+  std::vector<std::string> names = staged.to_remove();
+  std::erase_if(names, [](const std::string& name) {
+    return std::ranges::count(talus::io::project_layers(), name, &talus::io::ProjectLayer::style) > 0;
+  });
+  return names;
+}
+
 int hazard(const HazardOptions& options) {
   catch_signals();
   const fs::path folder(options.folder), file = tally_file(folder);
@@ -272,7 +282,7 @@ int hazard(const HazardOptions& options) {
   if (layer) objects = write_objects(options, *plan, *layer, staged.temporary(), record);
   record.files = staged.files();
   talus::io::write_text(staged.temporary() / "hazard.json", talus::io::hazard_json(record));
-  const std::vector<std::string> removed = staged.to_remove();
+  const std::vector<std::string> removed = not_asked_for(staged);
   staged.commit();
   refresh_project(folder);
   if (options.quiet) return 0;
