@@ -113,15 +113,15 @@ HazardRaster intensities(const EnergyWords& energy) {
 }
 
 HazardRaster hazard_curves(const EnergyWords& energy) {
-  return {
-      .map = {"hazard_curves",
-              "Mean number of blocks above an " + energy.name + " that pass the cell in a year, in plan, at any height",
-              Kind::Quantity,
-              {{"annual frequency of " + energy.symbol + " > <kJ> kJ (in plan, at any height)", "1/year"}},
-              {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 1.0, "1/year", Palette::Plasma}},
-      .meaning = "trajectories above the energy per year; one band per energy; with `--curves`",
-      .figures = [](const HazardPlace& place, std::size_t, Figures& figures) { push_curve(place, figures); },
-      .band_energies = energies_of_curves};
+  return {.map = {"hazard_curves",
+                  "Mean number of blocks above an energy" + energy.remark +
+                      " that pass the cell in a year, in plan, at any height",
+                  Kind::Quantity,
+                  {{"annual frequency of " + energy.symbol + " > <kJ> kJ (in plan, at any height)", "1/year"}},
+                  {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 1.0, "1/year", Palette::Plasma}},
+          .meaning = "trajectories above the energy per year; one band per energy; with `--curves`",
+          .figures = [](const HazardPlace& place, std::size_t, Figures& figures) { push_curve(place, figures); },
+          .band_energies = energies_of_curves};
 }
 
 Map with_number(Map map, const std::string& placeholder, double value) {

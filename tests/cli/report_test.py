@@ -151,7 +151,7 @@ class Content(Report):
             self.assertIn(warning, page.text)
         self.assertIn(", ".join(f"{end} {count:,}".replace(",", "\u00a0") for end, count in record["ends"].items()), page.text)
         self.assertLessEqual({"Impact probability", "Energy, P95", "Jump height, P95", "Deposits", "Released blocks",
-                              "Hazard class", "Annual frequency", "Return period, E > 30 kJ"}, set(page.maps()))
+                              "Hazard class, translational energy", "Annual frequency", "Return period, E > 30 kJ"}, set(page.maps()))
         self.assertIn("relief", [image["id"] for image in page.all("image")])
         text = self.read_text("out/report.html")
         self.assertIn("<th>up to 30 years</th><th>30 to 100 years</th>", text)
@@ -162,7 +162,7 @@ class Content(Report):
         page = self.page()
         left, top, columns, rows = self.window(page)
         files = {"Impact probability": ("impact_probability", 1), "Energy, P95": ("energy", 3), "Deposits": ("deposits", 1),
-                 "Jump height, P95": ("jump_height", 3), "Hazard class": ("hazard_class", 1),
+                 "Jump height, P95": ("jump_height", 3), "Hazard class, translational energy": ("hazard_class", 1),
                  "Return period, E > 30 kJ": ("return_period_30", 1), "Annual frequency": ("annual_frequency", 1)}
         for title, (name, band) in files.items():
             values, nodata = band_of(self.path(f"out/{name}.tif"), band, left, top, columns, rows)
@@ -259,7 +259,7 @@ class Content(Report):
         page = self.page()
         self.assert_alone(page)
         self.assertNotIn("At the screens", page.text)
-        self.assertNotIn("Hazard class", page.maps())
+        self.assertFalse([title for title in page.maps() if title.startswith("Hazard class")])
         self.assertIn("Nothing on this page is per year", page.text)
 
     def test_screens_in_numbers(self):
@@ -380,7 +380,7 @@ class Content(Report):
         """As `talus barrier` prints them."""
         self.results(hazard=False)
         said = self.run_well("barrier", self.path("out"), "--screen", "road", "--return-periods", "30,300000").stdout.replace("\xa0", " ")
-        rows = re.findall(r"(30|300 000) years +energy (.*\]) kJ +jump height (.*\]) m +speed (.*\]) m/s", said)
+        rows = re.findall(r"(30|300 000) years +energy (.*\]) kJ +jump height (.*\]) m +centre height (.*\]) m +speed (.*\]) m/s", said)
         self.assertEqual(len(rows), 2)
         self.assertIn("?]", rows[1][1])
         page = self.page().text.replace("\xa0", " ")
@@ -496,7 +496,7 @@ class Content(Report):
                     for item in items]
         self.assertGreater(len(expected), 3)
         self.write("out/hazard_class.qml", style.replace("".join(items), "".join(items[:0:-1])))
-        image = self.page().maps()["Hazard class"]
+        image = self.page().maps()["Hazard class, translational energy"]
         self.assertEqual(json.loads(image["data-classes"]), expected[:0:-1])  # the last first, the first not at all
 
     def test_the_day_is_that_of_the_file_and_so_called(self):
@@ -627,7 +627,7 @@ class Files(Report):
         page = self.page()
         self.assertIn("energy.tif: named in run.json, but missing", page.text)
         self.assertIn("annual_frequency.tif: named in hazard.json, but missing", page.text)
-        self.assertIn("Hazard class", page.maps())
+        self.assertIn("Hazard class, translational energy", page.maps())
         self.assertIn("How often each object is hit", page.text)
         os.remove(self.path("out/hazard.json"))
         page = self.page("--overwrite")
@@ -727,7 +727,7 @@ class Browser(Report):
         self.assertEqual(float(values["Impact probability"].removesuffix(" %")), float(f"{100 * float(f'{share:.2e}'):.6g}"))
         here = int(band_of(self.path("out/hazard_class.tif"), 1, left + int(column), top + int(row), 1, 1)[0][0, 0])
         self.assertGreater(here, 0)
-        self.assertEqual(values["Hazard class"], re.search(f'<item value="{here}" label="([^"]*)"', style).group(1))
+        self.assertEqual(values["Hazard class, translational energy"], re.search(f'<item value="{here}" label="([^"]*)"', style).group(1))
         self.assertIn(f"East {float(page.viewer()['data-west']) + 5 * column:.1f}", state["place"])
         self.assertAlmostEqual(float(state["left"]), 1 + float(page.viewer()["data-width"]) / 4, 1)
         self.assertEqual(state["view"], "#map-2")

@@ -62,11 +62,11 @@ class Styles(RunCase):
         self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "-q")
         titles = self.titles()
         self.assertEqual(titles[0], "Objects: return period of a hit")
-        self.assertLess(titles.index("Hazard class"), titles.index("Impact probability"))
-        self.assertIn("Return period of more than 300 kJ", titles)
+        self.assertLess(titles.index("Hazard class, translational energy"), titles.index("Impact probability"))
+        self.assertIn("Return period of more than 300 kJ, translational energy", titles)
         checked = [layer.get("name") for layer in self.project().iter("layer-tree-layer") if layer.get("checked") == "Qt::Checked"]
         self.assertEqual(checked, ["Objects: return period of a hit", "Screens: energy, P95", "Barriers of the run",
-                                   "Sources of the run", "Hazard class", "Hillshade of the DEM"])
+                                   "Sources of the run", "Hazard class, translational energy", "Hillshade of the DEM"])
         self.run_well("hazard", self.path("out"), "--overwrite", "-q")  # without the objects: they are gone from the project
         self.assertNotIn("Objects: return period of a hit", self.titles())
 

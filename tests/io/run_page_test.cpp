@@ -222,10 +222,15 @@ TEST(Escaping, EveryFieldOfEverySection) {
               HasSubstr("5 crossings (blocks and pieces) of 3 blocks; every block and"));
   barrier.blocks = 5.0;
   EXPECT_THAT(barriers_html({barrier}).text(), Not(HasSubstr("once in [95 %]")));
-  barrier.once_in = {
-      {300.0, {29.0, 28.0, 31.0}, {0.0, 0.0, 0.25}, {7.3, 7.2, std::numeric_limits<double>::infinity()}}};
-  EXPECT_THAT(barriers_html({barrier}).text(),
-              HasSubstr("<td>300 years</td><td>29 [28, 31]</td><td>0 [0, 0.25]</td><td>7.3 [7.2, ?]</td>"));
+  barrier.once_in = {{300.0,
+                      {29.0, 28.0, 31.0},
+                      {0.0, 0.0, 0.25},
+                      {0.5, 0.4, 0.6},
+                      {7.3, 7.2, std::numeric_limits<double>::infinity()}}};
+  EXPECT_THAT(
+      barriers_html({barrier}).text(),
+      HasSubstr(
+          "<td>300 years</td><td>29 [28, 31]</td><td>0 [0, 0.25]</td><td>0.5 [0.4, 0.6]</td><td>7.3 [7.2, ?]</td>"));
   EXPECT_THAT(barriers_html({barrier}).text(), HasSubstr("5 blocks cross the line; every block counts"));
   EXPECT_THAT(page_of({h, h, h}, Markup() + h), HasSubstr("<title>Talus: &lt;script&gt;"));
 }

@@ -88,10 +88,10 @@ class Project(unittest.TestCase):
         names = list(self.layers)
         maps = [name for name in names if self.layers[name].type() == 1]
         self.assertEqual(maps[:2], ["Hazard goes on beyond the map (cut short)", "Class undecided"])
-        self.assertEqual((maps[2], names[-1]), ("Hazard class", "Hillshade of the DEM"))
+        self.assertEqual((maps[2], names[-1]), ("Hazard class, energy with rotation", "Hillshade of the DEM"))
         visible = [layer.name() for layer in self.group.findLayers() if layer.isVisible()]
         self.assertEqual(visible, ["Barrier at road: MEL by stretch", "Objects: return period of a hit", "Screens: energy, P95",
-                                   "Sources of the run", "Hazard goes on beyond the map (cut short)", "Hazard class",
+                                   "Sources of the run", "Hazard goes on beyond the map (cut short)", "Hazard class, energy with rotation",
                                    "Hillshade of the DEM"])
         self.assertEqual(self.layers["Hillshade of the DEM"].renderer().type(), "hillshade")
 
@@ -114,7 +114,7 @@ class Project(unittest.TestCase):
         def vector(name):
             return [item.label() for item in self.layers[name].renderer().ranges()]
 
-        self.assertEqual(raster("Hazard class"), ["none", "residual", "low", "medium", "high"])
+        self.assertEqual(raster("Hazard class, energy with rotation"), ["none", "residual", "low", "medium", "high"])
         years = ["up to 10 years", "10 to 30 years", "30 to 100 years", "100 to 300 years", "300 to 1000 years", "above 1000 years"]
         self.assertEqual(raster("Return period of more than 300 kJ"), years)
         self.assertEqual(vector("Objects: return period of a hit"), years + ["no hit counted in this run"])
@@ -236,7 +236,7 @@ class Project(unittest.TestCase):
         self.assertFalse(values["partly"])  # NULL
 
     def test_drawn_colours_are_those_of_the_classes(self):
-        layer = self.layers["Hazard class"]
+        layer = self.layers["Hazard class, energy with rotation"]
         band = gdal.Open(os.path.join(self.out, "hazard_class.tif"))
         west, cell, _, north, _, _ = band.GetGeoTransform()
         classes = band.GetRasterBand(1).ReadAsArray()

@@ -12,7 +12,8 @@ struct EnergyWords {
 };
 
 inline const EnergyWords& energy_words(bool with_rotation) {
-  static const EnergyWords translational{"translational kinetic energy", "energy", "E", ""};
+  static const EnergyWords translational{"translational kinetic energy", "translational energy", "E",
+                                         " (translational energy)"};
   static const EnergyWords total{"total kinetic energy (with rotation)", "energy with rotation", "E with rotation",
                                  " (energy with rotation)"};
   return with_rotation ? total : translational;

@@ -10,6 +10,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/io/results/style.hpp"
+#include "talus/products/energy_words.hpp"
 #include "talus/products/hazard_table.hpp"
 
 namespace talus::io {
@@ -55,7 +56,7 @@ std::string title_of(const std::string& name, const Shown& shown, const std::str
   const std::string title = shown.title, rest = rest_of(name, shown);  // a legend has room for 40 letters
   if (name.starts_with("return_period_")) return (with_rotation ? "Return period, total E > " : title) + rest + " kJ";
   if (name.starts_with("intensity_T")) return (with_rotation ? "Total energy once in " : title) + rest + " years";
-  if (name == "hazard_class") return title + (with_rotation ? ", total energy" : "");
+  if (name == "hazard_class") return title + ", " + energy_words(with_rotation).name;
   const bool quantity = band == "mean" || band == "maximum" || (band.size() == 3 && band.starts_with('P'));
   return quantity ? title + ", " + shortened(band, 20) : title;
 }

@@ -160,7 +160,7 @@ std::vector<std::pair<std::string, std::string>> titles_of(const std::vector<std
   return found;
 }
 
-/// A title with what the settings of the run say: the lowest threshold, and whether energies count the rotation.
+/// A title with what the settings of the run say: the lowest threshold, and which energy counts.
 std::string title_in_run(std::string title, const ProjectLayer& layer, const std::vector<Setting>& settings) {
   std::string threshold = kUnknownThreshold;
   for (const Setting& setting : settings) {
@@ -168,8 +168,8 @@ std::string title_in_run(std::string title, const ProjectLayer& layer, const std
       const Json values = Json::parse(setting.value, nullptr, false);  // "[30, 300]", in ascending order
       if (values.is_array() && !values.empty()) threshold = text_of(values.front().get<double>()) + " " + setting.unit;
     }
-    if (setting.key == "output.count_rotation" && setting.value == "true" && layer.counts_energy)
-      title += ", " + energy_words(true).name;
+    if (setting.key == "output.count_rotation" && layer.counts_energy)
+      title += ", " + energy_words(setting.value == "true").name;
   }
   return filled(std::move(title), "<threshold>", threshold);
 }
@@ -392,9 +392,9 @@ const std::vector<ProjectLayer>& project_layers() {
       {"stops.gpkg", "Stops: largest energy of the path"},
       {"trajectories.gpkg", "Paths: largest speed"},
       {"barriers.csv", "Barriers of the run: counts by stretch"},
-      {"hazard_class.tif", "Hazard goes on beyond the map (cut short)", true, false,
+      {"hazard_class.tif", "Hazard goes on beyond the map (cut short)", true, false, "",
        mark_style_name("hazard_class", "cut short")},
-      {"hazard_class.tif", "Class undecided", false, false, mark_style_name("hazard_class", "undecided")},
+      {"hazard_class.tif", "Class undecided", false, false, "", mark_style_name("hazard_class", "undecided")},
       {"hazard_class.tif", "Hazard class", true, true},
       {"annual_frequency.tif", "Blocks per year"},
       {"return_period_<n>.tif", "Return period of more than <n> kJ", false, true},

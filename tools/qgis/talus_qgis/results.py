@@ -65,12 +65,12 @@ def title_of(name, folder=None):
 
 
 def _title_in_run(title, entry, settings):
-    """A title with what the settings of the run say: the lowest threshold, and whether energies count the rotation."""
+    """A title with what the settings of the run say: the lowest threshold, and which energy counts."""
     values, unit = settings.get(entry.get("thresholds"), ("", ""))  # "[30, 300]", in ascending order
     lowest = values.strip("[]").split(",")[0]
     title = title.replace("<threshold>", f"{lowest} {unit}" if lowest else tr("the lowest threshold"))
-    counts_rotation = settings.get("output.count_rotation", ("", ""))[0] == "true"
-    return title + tr(", energy with rotation") if entry.get("counts_energy") and counts_rotation else title
+    counted = {"true": tr(", energy with rotation"), "false": tr(", translational energy")}
+    return title + counted.get(settings.get("output.count_rotation", ("", ""))[0], "") if entry.get("counts_energy") else title
 
 
 def _settings_of(folder):

@@ -288,6 +288,7 @@ GERMAN = {
     "Energy, P95": "Energie, P95",
     "Energy with rotation, P95": "Energie mit Rotation, P95",
     ", energy with rotation": ", Energie mit Rotation",
+    ", translational energy": ", Translationsenergie",
     "Jump height, P95": "Sprunghöhe, P95",
     "Speed, P95": "Geschwindigkeit, P95",
     "Share with energy above <threshold>": "Anteil mit Energie über <threshold>",

@@ -40,7 +40,7 @@ struct ProjectLayer {
   std::string file;            ///< "return_period_<n>.tif"; ".gpkg" is also ".fgb"; ".csv" is a table
   std::string title;           ///< "Return period of more than <n> kJ"
   bool shown = false;          ///< at first; of the maps only one: the hazard class, if there is one
-  bool counts_energy = false;  ///< its title says so where the run counts the energy with rotation
+  bool counts_energy = false;  ///< its title says which energy the run counts
   std::string thresholds{};    ///< setting of the run, whose lowest number <threshold> is: "output.energy_thresholds"
   std::string style{};         ///< of a mark over the map of the file; without this style there is no layer
 };
