@@ -415,7 +415,10 @@ class Content(Report):
         for row in self.read_table("out/objects.csv")[::2]:
             here, low, high = (names[int(row["hazard_class" + end])] for end in ("", "_lower", "_upper"))
             self.assertEqual(low != high, row["object"] == "EGID 9")  # nothing came there, of too few blocks to say more
-            self.assertIn(f"<td>{here} [{low} to {high}]</td>" if low != high else f"<td>{here}</td>", told[row["object"]])
+            said = f"{here} [{low} to {high}]" if low != high else here
+            here, low, high = (names[int(row["entry_class" + end])] for end in ("", "_lower", "_upper"))
+            entry = f"{here} [{low} to {high}]" if low != high else here
+            self.assertIn(f"<td>{said}</td>" if entry == said else f"<td>{said}; at the first touch {entry}</td>", told[row["object"]])
 
     def test_a_road_that_is_screen_and_object_is_named_once(self):
         line = f"LINESTRING ({WEST} 1200100,{WEST + 300} 1200100)"

@@ -255,7 +255,7 @@ TEST(BarrierNotes, OfAllBarriersAreToldOnce) {
 /// An object whose larger part is not assessed looks safe in no cell of its row.
 TEST(ObjectsTable, SaysWhatIsNotAssessed) {
   ObjectsPart::Object object{"km 1.6", "cliff", 0.0, 0.0, std::nullopt, 0.67, {"not known"}, {}};
-  object.hazard_class = object.lowest_class = 0;
+  object.hazard_class = {0, 0, std::nullopt};
   const auto text = [&] {
     ObjectsPart part;
     part.thresholds = {"30"};
@@ -267,7 +267,7 @@ TEST(ObjectsTable, SaysWhatIsNotAssessed) {
   EXPECT_THAT(text(), HasSubstr("<td>none or higher</td>"));
   object.frequency = 0.1, object.low = 0.05;
   EXPECT_THAT(text(), HasSubstr("0.1 [0.05 or more]</td><td class='n'>10 [20 or less]</td>"));
-  object.high = 0.2, object.highest_class = 1;
+  object.high = 0.2, object.hazard_class.high = 1;
   EXPECT_THAT(text(),
               HasSubstr("<tr><td>km 1.6</td><td class='n'>0.1 [0.05, 0.2]</td><td class='n'>10 [5 to 20]</td>"));
 }

@@ -132,13 +132,19 @@ std::string years_text(std::optional<double> frequency, std::optional<double> lo
 }
 
 /// "low"; with the classes at the bounds where they differ: "none [none to high]".
-std::string class_text(const ObjectsPart::Object& object, const std::vector<std::string>& classes) {
+std::string class_text(const ObjectsPart::Class& of, const std::vector<std::string>& classes) {
   const auto name = [&](std::optional<std::size_t> c) {
     return c && *c < classes.size() ? classes[*c] : std::string();
   };
-  const std::string low = name(object.lowest_class), high = name(object.highest_class);
-  if (high.empty() && !low.empty()) return name(object.hazard_class) + " or higher";
-  return name(object.hazard_class) + (low == high ? "" : " [" + low + " to " + high + "]");
+  const std::string low = name(of.low), high = name(of.high);
+  if (high.empty() && !low.empty()) return name(of.here) + " or higher";
+  return name(of.here) + (low == high ? "" : " [" + low + " to " + high + "]");
+}
+
+/// "high", or "high; at the first touch medium" where that class differs.
+std::string classes_text(const ObjectsPart::Object& object, const std::vector<std::string>& classes) {
+  const std::string largest = class_text(object.hazard_class, classes), entry = class_text(object.entry_class, classes);
+  return entry.empty() || entry == largest ? largest : largest + "; at the first touch " + entry;
 }
 
 /// The three sources with the largest shares, which are the first: "cliff 39 37.7 %; cliff 31 21.9 %; cliff 34 7.33 %;
@@ -162,7 +168,7 @@ Markup object_row(const ObjectsPart::Object& object, const std::vector<std::stri
       (part ? " or more" : ", " + with_digits(*object.high, 3)) + "]</td><td class='n'>" +
       years_text(object.frequency, object.low, object.high) + "</td>";
   for (const std::string& years : object.years) row += "<td class='n'>"_html + years + "</td>";
-  if (!classes.empty()) row += "<td>"_html + class_text(object, classes) + "</td>";
+  if (!classes.empty()) row += "<td>"_html + classes_text(object, classes) + "</td>";
   return row + "<td>" + largest_sources(object.sources) + "</td></tr>\n";
 }
 
@@ -181,13 +187,15 @@ void add_object(const CsvTable& table, const CsvTable::Row& row, ObjectsPart& pa
   object.name = name, object.sources = table.text(row, "sources");
   object.frequency = *frequency, object.low = *low, object.high = high;
   object.without_height = number("share_without_height").value_or(0.0);
-  const auto hazard_class = [&](const std::string& column) -> std::optional<std::size_t> {
+  const auto class_in = [&](const std::string& column) -> std::optional<std::size_t> {
     const auto c = number(column);
     return c && *c >= 0.0 && *c < 1e3 ? std::optional(static_cast<std::size_t>(*c)) : std::nullopt;
   };
-  object.hazard_class = hazard_class("hazard_class");
-  object.lowest_class = hazard_class("hazard_class_lower");
-  object.highest_class = hazard_class("hazard_class_upper");
+  const auto bounded_class = [&](const std::string& column) {
+    return ObjectsPart::Class{class_in(column), class_in(column + "_lower"), class_in(column + "_upper")};
+  };
+  object.hazard_class = bounded_class("hazard_class");
+  object.entry_class = bounded_class("entry_class");
   for (const std::string& energy : part.thresholds)
     object.years.push_back(years_text(number("frequency_" + energy), number("frequency_" + energy + "_lower"),
                                       number("frequency_" + energy + "_upper")));
@@ -235,7 +243,8 @@ Markup objects_html(const ObjectsPart& part, bool pieces, const std::vector<std:
       "event\": no block of this run did it; it may happen all the same, as often as the upper bound. Energies are the "
       "largest within the outline (safe for what does not stop a block: a yard, a road); at the first touch, for a "
       "wall, they are in objects.csv (entry), at a barrier in its table. The class is that of the object by these "
-      "frequencies; where the classes at the bounds differ (in brackets), it is not decided: take more trajectories. "
+      "frequencies, with the class by the energies at the first touch where that differs; where the classes at the "
+      "bounds differ (in brackets), it is not decided: take more trajectories. "
       "The map \"Hazard class\" has that of each cell: the longer an object, "
       "the more often it is hit, and its class may be higher than that of every cell. To compare parts of a road, cut "
       "it into sections of one length. A block counts for each object that it hits, for both of two sections at their "

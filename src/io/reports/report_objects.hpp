@@ -13,6 +13,10 @@ struct ObjectsPart {
   struct Point {
     double energy = 0.0, frequency = 0.0;  ///< [kJ], [1/year]
   };
+  /// Number of a class, and of those at the bounds of the frequencies; nothing in a table without classes.
+  struct Class {
+    std::optional<std::size_t> here = {}, low = {}, high = {};
+  };
   /// An object that was assessed.
   struct Object {
     std::string name, sources;
@@ -21,8 +25,7 @@ struct ObjectsPart {
     double without_height = 0.0;        ///< that part: a share, where the DEM has no height
     std::vector<std::string> years;     ///< return period by threshold, with its bounds [years], in words
     std::vector<Point> curve;
-    /// Numbers of its class, and of those at the bounds of the frequencies; nothing in a table without classes.
-    std::optional<std::size_t> hazard_class = {}, lowest_class = {}, highest_class = {};
+    Class hazard_class = {}, entry_class = {};  ///< by the largest energies, by those at the first touch
   };
   std::vector<std::string> thresholds;  ///< [kJ]
   std::vector<Object> objects;          ///< the most often hit first
