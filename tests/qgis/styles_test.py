@@ -101,7 +101,7 @@ class Project(unittest.TestCase):
         self.assertEqual((cliffs.featureCount(), cliffs.renderer().type()), (6, "singleSymbol"))
         self.assertEqual(cliffs.renderer().symbol().symbolLayer(0).color().alpha(), 0)  # what lies below is seen
         for name, file in (("Barrier at road: design values", "barrier_road.csv"), ("Objects: sources of the hits", "objects_sources.csv"),
-                           ("Objects: hazard curves", "objects_curves.csv"), ("Screens: all quantities", "screens_summary.csv")):
+                           ("Objects: hazard curves, energy with rotation", "objects_curves.csv"), ("Screens: all quantities", "screens_summary.csv")):
             with open(os.path.join(self.out, file), encoding="utf-8", newline="") as text:
                 self.assertEqual(self.layers[name].featureCount(), len(list(csv.DictReader(text))), name)
         values = {f["name"]: f["value"] for f in self.layers["Barrier at road: design values"].getFeatures()}
@@ -116,7 +116,7 @@ class Project(unittest.TestCase):
 
         self.assertEqual(raster("Hazard class, energy with rotation"), ["none", "residual", "low", "medium", "high"])
         years = ["up to 10 years", "10 to 30 years", "30 to 100 years", "100 to 300 years", "300 to 1000 years", "above 1000 years"]
-        self.assertEqual(raster("Return period of more than 300 kJ"), years)
+        self.assertEqual(raster("Return period of more than 300 kJ, energy with rotation"), years)
         self.assertEqual(vector("Objects: return period of a hit"), years + ["no hit counted in this run"])
         self.assertEqual(raster("Reach probability"), ["0 %", "up to 2 %", "2 to 5 %", "5 to 10 %", "10 to 20 %", "20 to 50 %", "50 to 100 %"])
         kj = ["up to 30 kJ", "30 to 100 kJ", "100 to 300 kJ", "300 to 1000 kJ", "1000 to 3000 kJ", "above 3000 kJ"]
