@@ -620,6 +620,43 @@ class AsciiGrids(InputCase):
             self.write("d.asc", "\n".join(self.with_word(word)))
             self.refused(f"d.asc:30: '{word}' is no number, must be one, or the NODATA_value", dem="d.asc")
 
+    def test_ends_of_files(self):
+        for end in ("\x1a", "\n\x1a\n", "\f", "\0"):
+            self.write("d.asc", "\n".join(self.lines) + end)
+            self.run_well("check", *self.flags(dem="d.asc"))
+
+    def test_a_word_in_the_first_row(self):
+        words = self.lines[6].split()
+        self.write("d.asc", "\n".join([*self.lines[:6], " ".join(["none", *words[1:]]), *self.lines[7:]]))
+        self.refused("d.asc:7: 'none' is no number", dem="d.asc")
+
+    def test_grass(self):
+        """Six lines of another header; `*`, or the word that the header names, is no value."""
+        head = [f"north: {NORTH}", f"south: {NORTH - 300}", f"east: {WEST + 300}", f"west: {WEST}", "rows: 60", "cols: 60"]
+        for more, word in (([], "*"), (["null: -"], "-"), (["type: float", "null: none"], "none")):
+            self.write("d.asc", "\n".join([*head, *more, *self.with_word(word)[6:]]) + "\n")
+            self.run_well("check", *self.flags(dem="d.asc"))
+        self.write("d.asc", "\n".join([*head, "null: -", *self.with_word("*")[6:]]) + "\n")
+        self.refused("d.asc:31: '*' is no number", dem="d.asc")
+        self.write("d.asc", "\n".join([*head, *self.lines[6:-1]]) + "\n")
+        self.refused("d.asc: has 3540 numbers", dem="d.asc")
+
+    def test_in_a_vrt(self):
+        gdal.BuildVRT(self.path("d.vrt"), [self.path("d.asc")]).FlushCache()
+        gdal.BuildVRT(self.path("of.vrt"), [self.path("d.vrt")]).FlushCache()
+        for dem in ("d.vrt", "of.vrt"):
+            self.run_well("check", *self.flags(dem=dem))
+        self.write("d.asc", "\n".join(line.replace("nrows        60", "nrows        50") for line in self.lines))
+        for dem in ("d.vrt", "of.vrt"):
+            self.refused("d.asc: has 3600 numbers, its header says 60 columns x 50 rows", dem=dem)
+
+    def test_a_cut_raster_in_a_vrt(self):
+        gdal.Translate(self.path("d.img"), self.path("dem.tif"), format="ENVI")
+        gdal.BuildVRT(self.path("d.vrt"), [self.path("d.img")]).FlushCache()
+        self.run_well("check", *self.flags(dem="d.vrt"))
+        os.truncate(self.path("d.img"), os.path.getsize(self.path("d.img")) - 100)
+        self.refused("d.img: is cut off", dem="d.vrt")
+
     def test_zones(self):
         write_dem(self.path("zones.tif"), np.ones((60, 60)))
         gdal.Translate(self.path("zones.asc"), self.path("zones.tif"), format="AAIGrid", outputType=gdal.GDT_Int32)

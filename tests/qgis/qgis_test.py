@@ -1235,7 +1235,7 @@ class FromPython(Case):
                                          context=context)
             self.assertTrue(good)
             self.load(context)
-            layer = next(node.layer() for node in QgsProject.instance().layerTreeRoot().findLayers() if node.name().startswith("Gefahrenstufe"))
+            layer = next(node.layer() for node in QgsProject.instance().layerTreeRoot().findLayers() if node.name().startswith("Gefahrenstufe,"))
             self.assertEqual([label for label, _ in layer.renderer().legendSymbologyItems()], names)
         finally:
             QgsApplication.setLocale(before)
