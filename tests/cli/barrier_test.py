@@ -503,11 +503,28 @@ class Weights(Case):
         design = {row["name"]: row["value"] for row in small["design"]}
         self.assertGreater(energy, design["SEL"])
         self.assertGreater(centre, design["h_i"])
-        told = [float(number) for number in re.findall(r"[0-9.]+(?= kJ| m above| m\))", notes[0])]
+        told = [float(number) for number in re.findall(r"[0-9.]+(?= \[| kJ\)| m\))", notes[0])]
         for said, value in zip(told, (energy, design["SEL"], centre, design["h_i"]), strict=True):
             self.assertAlmostEqual(said / value, 1.0, 2)
+        low = self.report("--volume", "500", "--gTr", "1", "--gDp", "1")  # half of such a block is more than any jump
+        tall = self.report("--volume", "2", "--gTr", "1", "--gDp", "1")
+        for report, wanted in ((low, []), (tall, ["its centre"])):
+            design = {row["name"]: row["value"] for row in report["design"]}
+            rarest = report["once_in"][-1]
+            notes = [note for note in report["notes"] if note.startswith("blocks exceed this design")]
+            above = [word for word, key, name in (("SEL", "energy_kj", "SEL"), ("its centre", "centre_height_m", "h_i"))
+                     if rarest[key]["value"] > design[name]]
+            self.assertEqual(above, wanted)
+            self.assertEqual(len(notes), len(wanted) and 1)
+            for word in ("SEL", "its centre"):
+                self.assertEqual(word in " ".join(notes), word in wanted)
+        unknown = self.report("--volume", "0.01", "--gTr", "1", "--gDp", "1", "--return-periods", "1000000")
+        self.assertIsNone(unknown["once_in"][-1]["energy_kj"]["high"])
+        self.assertIn('a bound "?" is not known: run more trajectories first', " ".join(unknown["notes"]))
+        may = self.report("--volume", "500", "--return-periods", "1000000")  # larger than any value of the run
+        self.assertIn("blocks may exceed this design more often than once in 1\xa0000\xa0000 years", " ".join(may["notes"]))
         rare = self.report("--volume", "0.01", "--gTr", "1", "--gDp", "1", "--return-periods", "0.01")
-        large = self.report("--volume", "500", "--gTr", "3")
+        large = self.report("--volume", "500", "--gTr", "3", "--return-periods", "4.93")
         for report in (rare, large):  # crossings are rarer than once in 0.01 years
             self.assertFalse([note for note in report["notes"] if "more often" in note])
 

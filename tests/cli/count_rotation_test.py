@@ -164,7 +164,7 @@ class CountRotation(OneThread, KeptRuns, Case):
         for out, words in (("plain", False), ("total", True)):
             self.run_well("report", self.path(out), "-q")
             page = self.read_text(out + "/report.html")
-            for text in ("Energies and classes of objects count the rotation", "energy with rotation [kJ]", "Return period, total E &gt; 30 kJ",
+            for text in ("Energies and classes of objects count the rotation", "energy with rotation [kJ]", "Return period, energy with rotation &gt; 30 kJ",
                          "energy with rotation, return period", "classes and objects count the energy with rotation"):
                 self.assertEqual(text in page, words, text)
             self.assertEqual("Hazard class, energy with rotation" in self.read_text(out + "/talus.qgs"), words)

@@ -327,7 +327,7 @@ TEST_F(Project, TitlesNameTheLowestThreshold) {
                      {"output.count_rotation", "true", "", "default"}};
   const std::string text =
       project_of({"energy_exceedance.tif", "height_exceedance.tif"}, path(""), path("out"), ground);
-  EXPECT_NE(text.find("<layername>Share with energy above 2.5 kJ, energy with rotation<"), std::string::npos) << text;
+  EXPECT_NE(text.find("<layername>Share above 2.5 kJ, energy with rotation<"), std::string::npos) << text;
   EXPECT_NE(text.find("<layername>Share with jump height above the lowest threshold<"), std::string::npos) << text;
 }
 

@@ -1277,13 +1277,13 @@ class FromPython(Case):
             self.assertEqual(results.title_of(name, self.folder), title)
         self.assertIn(", energy with rotation", texts.GERMAN)
         self.assertIn("the lowest threshold", texts.GERMAN)
-        self.assertEqual(results.title_of("energy_exceedance.tif"), "Share with energy above the lowest threshold")
+        self.assertEqual(results.title_of("energy_exceedance.tif"), "Share above the lowest threshold")
         self.assertIn(", translational energy", texts.GERMAN)
         for value, more in (("false", ", translational energy"), ("true", ", energy with rotation")):
             with open(self.path("run.json"), "w", encoding="utf-8") as file:
                 json.dump({"settings": [{"key": "seed", "value": 1}, {"key": "output.count_rotation", "value": value},
                                         {"key": "output.energy_thresholds", "value": "[2.5, 300]", "unit": "kJ"}]}, file)
-            self.assertEqual(results.title_of("energy_exceedance.tif", self.folder), "Share with energy above 2.5 kJ" + more)
+            self.assertEqual(results.title_of("energy_exceedance.tif", self.folder), "Share above 2.5 kJ" + more)
             self.assertEqual(results.title_of("height_exceedance.tif", self.folder), "Share with jump height above the lowest threshold")
             self.assertEqual(results.title_of("return_period_30.tif", self.folder), "Return period of more than 30 kJ" + more)
             self.assertEqual(results.title_of("hazard_class.tif", self.folder), "Hazard class" + more)

@@ -250,6 +250,7 @@ std::optional<std::string> write_barrier(const std::filesystem::path& folder, co
 }
 
 std::string value_once_text(const Bounded& b) {
+  if (std::isnan(b.value)) return "?";
   return with_digits(b.value, 3) + " [" + with_digits(b.low, 3) + ", " +
          (std::isfinite(b.high) ? with_digits(b.high, 3) : "?") + "]";
 }
@@ -257,17 +258,24 @@ std::string value_once_text(const Bounded& b) {
 std::optional<std::string> often_note(const BarrierReport& r) {
   if (r.once_in.empty()) return std::nullopt;
   const OnceIn& rarest = r.once_in.back();
-  const double sel = r.design.sel * 1e-3;
+  const double sel = r.design.sel * 1e-3, height = r.design.height;
+  const bool exceeded = rarest.energy.value > sel || rarest.centre.value > height;
   std::vector<std::string> texts;
-  if (rarest.energy.value > sel)
-    texts.push_back(with_digits(rarest.energy.value, 3) + " kJ (SEL " + with_digits(sel, 4) + " kJ)");
-  if (rarest.centre.value > r.design.height)
-    texts.push_back("their centre " + with_digits(rarest.centre.value, 3) + " m above the ground (h_i " +
-                    with_digits(r.design.height, 4) + " m)");
+  if (exceeded ? rarest.energy.value > sel : rarest.energy.high > sel)
+    texts.push_back("with " + value_once_text(rarest.energy) + " kJ (SEL " + with_digits(sel, 4) + " kJ)");
+  if (exceeded ? rarest.centre.value > height : rarest.centre.high > height)
+    texts.push_back("with its centre " + value_once_text(rarest.centre) + " m above the ground (h_i " +
+                    with_digits(height, 4) + " m)");
   if (texts.empty()) return std::nullopt;
-  return "blocks exceed this design more often than once in " + readable(rarest.years) +
-         " years: those of once in so many years have " + joined(texts) +
-         ". Where that is too often, build for these values: the design is of a share of the blocks, however many fall";
+  const std::string years = "once in " + readable(rarest.years) + " years";
+  return "blocks " + std::string(exceeded ? "" : "may ") + "exceed this design more often than " + years + ": " +
+         years + " one passes " + texts.front() + (texts.size() > 1 ? ", one " + texts.back() : "") +
+         ". The design holds a share of the blocks, however many fall. If that is too often, build for the upper "
+         "bound, "
+         "which has no safety factor, or for another note's value if that is higher" +
+         (std::isfinite(rarest.energy.high) && std::isfinite(rarest.centre.high)
+              ? ""
+              : "; a bound \"?\" is not known: run more trajectories first");
 }
 
 std::string frequency_text(const Reliability::Limit& l) {

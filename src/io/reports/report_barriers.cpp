@@ -36,7 +36,9 @@ void read_limits(const Json& json, BarrierPart& part) {
     }
 }
 
+/// NaN of what is not in an earlier design.
 Bounded bounded_from(const Json& json) {
+  if (json.is_null()) return {kNotGiven, kNotGiven, kNotGiven};
   return {number_of(json, "value"), number_of(json, "low"),
           number_of(json, "high", std::numeric_limits<double>::infinity())};
 }
@@ -52,10 +54,9 @@ BarrierPart part_of(const Json& json) {
         {one.at("name").get<std::string>(), one.value("unit", ""), one.value("from", ""), number_of(one, "value")});
   read_limits(json, part);
   for (const Json& one : json.value("once_in", Json::array()))
-    if (one.contains("centre_height_m"))  // not in earlier designs
-      part.once_in.push_back({number_of(one, "years"), bounded_from(one.at("energy_kj")),
-                              bounded_from(one.at("jump_height_m")), bounded_from(one.at("centre_height_m")),
-                              bounded_from(one.at("speed_ms"))});
+    part.once_in.push_back({number_of(one, "years"), bounded_from(one.at("energy_kj")),
+                            bounded_from(one.at("jump_height_m")), bounded_from(one.value("centre_height_m", Json())),
+                            bounded_from(one.at("speed_ms"))});
   for (const Json& one : json.value("stretches", Json::array())) {
     if (part.stretches.size() == kMostStretches) break;
     BarrierPart::Stretch stretch{number_of(one, "from_m"), number_of(one, "to_m"), number_of(one, "crossings")};

@@ -31,8 +31,8 @@ constexpr Shown kShown[] = {{"hazard_class", "Hazard class", true},
                             {"deposits", "Deposits", true},
                             {"release", "Released blocks", true},
                             {"annual_frequency", "Annual frequency", true},
-                            {"return_period_", "Return period, E > ", true},
-                            {"intensity_T", "Energy exceeded once in ", true},
+                            {"return_period_", "Return period", true},
+                            {"intensity_T", "Energy", true},
                             {"reach_probability", "Reach probability", false},
                             {"energy_total", "Energy with rotation", false},
                             {"passages", "Passages", false},
@@ -53,10 +53,11 @@ bool is_shown_as(const std::string& name, const Shown& shown) {
 
 /// @param with_rotation  thresholds and hazard count the energy with rotation
 std::string title_of(const std::string& name, const Shown& shown, const std::string& band, bool with_rotation) {
-  const std::string title = shown.title, rest = rest_of(name, shown);  // a legend has room for 40 letters
-  if (name.starts_with("return_period_")) return (with_rotation ? "Return period, total E > " : title) + rest + " kJ";
-  if (name.starts_with("intensity_T")) return (with_rotation ? "Total energy once in " : title) + rest + " years";
-  if (name == "hazard_class") return title + ", " + energy_words(with_rotation).name;
+  const std::string title = shown.title, rest = rest_of(name, shown);
+  const std::string of_energy = title + ", " + energy_words(with_rotation).name;
+  if (name.starts_with("return_period_")) return of_energy + " > " + rest + " kJ";
+  if (name.starts_with("intensity_T")) return of_energy + " once in " + rest + " years";
+  if (name == "hazard_class") return of_energy;
   const bool quantity = band == "mean" || band == "maximum" || (band.size() == 3 && band.starts_with('P'));
   return quantity ? title + ", " + shortened(band, 20) : title;
 }

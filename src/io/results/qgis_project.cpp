@@ -407,7 +407,7 @@ const std::vector<ProjectLayer>& project_layers() {
       {"energy_total.tif", "Energy with rotation, P95"},
       {"jump_height.tif", "Jump height, P95"},
       {"velocity.tif", "Speed, P95"},
-      {"energy_exceedance.tif", "Share with energy above <threshold>", false, true, "output.energy_thresholds"},
+      {"energy_exceedance.tif", "Share above <threshold>", false, true, "output.energy_thresholds"},
       {"height_exceedance.tif", "Share with jump height above <threshold>", false, false, "output.height_thresholds"},
       {"energy_bounds.tif", "Energy, upper bound of P95"},
       {"jump_height_bounds.tif", "Jump height, upper bound of P95"},

@@ -291,7 +291,7 @@ GERMAN = {
     ", translational energy": ", Translationsenergie",
     "Jump height, P95": "Sprunghöhe, P95",
     "Speed, P95": "Geschwindigkeit, P95",
-    "Share with energy above <threshold>": "Anteil mit Energie über <threshold>",
+    "Share above <threshold>": "Anteil über <threshold>",
     "Share with jump height above <threshold>": "Anteil mit Sprunghöhe über <threshold>",
     "the lowest threshold": "der tiefsten Schwelle",
     "Energy, upper bound of P95": "Energie, obere Grenze des P95",

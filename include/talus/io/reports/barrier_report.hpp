@@ -40,7 +40,7 @@ struct StretchRow {
 /// of the files.
 struct OnceIn {
   double years;
-  Bounded energy, height, centre, speed;  ///< [kJ], [m], [m], [m/s]; 0: crossings are rarer; infinite: not known
+  Bounded energy, height, centre, speed;  ///< [kJ], [m], [m], [m/s]; 0: crossings are rarer; infinite or NaN: not known
 };
 
 /// How wide a barrier must be.
@@ -83,7 +83,7 @@ struct BarrierReport {
 /// Empty without frequencies.
 std::string frequency_text(const Reliability::Limit& limit);
 
-/// A value that is reached once in some years: "12 [8, 20]"; "?" for a bound that is not known.
+/// A value that is reached once in some years: "12 [8, 20]"; "?" for what is not known.
 std::string value_once_text(const Bounded& value);
 
 /// The report as a page for people, as JSON and as a table of one row per value. Energies in kJ.
@@ -105,7 +105,7 @@ std::optional<std::string> write_barrier(const std::filesystem::path& folder, co
 std::string stretches_csv(const BarrierReport& report);
 
 /// A sentence if blocks have more energy than SEL, or their centre is above h_i, more often than once in the longest of
-/// the return periods.
+/// the return periods, or if they may by the upper bounds.
 std::optional<std::string> often_note(const BarrierReport& report);
 
 /// A sentence if a part of the line lies where the DEM has no height.
