@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "complete_file.hpp"
 #include "input_name.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
@@ -103,13 +102,9 @@ void check_numbers(GDALDataset& dataset, const std::string& path) {
 /// alone.
 void check_rasters_of_vrt(const std::string& path) {
   const char* const drivers[] = {"AAIGrid", "GRASSASCIIGrid", "ENVI", "PCRaster", nullptr};
-  for (const std::string& name : files_of_vrt(path, looked_up(path).file)) {
-    GdalMessages messages;
-    const Dataset raster(GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr));
-    if (!raster) continue;
-    check_complete(*raster, name, name, messages);
-    check_text_grid(*raster, name);
-  }
+  for (const std::string& name : files_of_vrt(path, looked_up(path).file))
+    if (GDALIdentifyDriverEx(name.c_str(), GDAL_OF_RASTER, drivers, nullptr) != nullptr)
+      check_text_grid(*open_dataset(name, GDAL_OF_RASTER), name);
 }
 
 }  // namespace
