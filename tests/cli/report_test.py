@@ -426,7 +426,9 @@ class Content(Report):
             said = f"{here} [{low} to {high}]" if low != high else here
             here, low, high = (names[int(row["entry_class" + end])] for end in ("", "_lower", "_upper"))
             entry = f"{here} [{low} to {high}]" if low != high else here
-            self.assertIn(f"<td>{said}</td>" if entry == said else f"<td>{said}; at the first touch {entry}</td>", told[row["object"]])
+            said += "" if entry == said else f"; at the first touch {entry}"
+            said += "" if float(row["frequency"]) > 0.0 else " in this run"
+            self.assertIn(f"<td>{said}</td>", told[row["object"]])
 
     def test_a_road_that_is_screen_and_object_is_named_once(self):
         line = f"LINESTRING ({WEST} 1200100,{WEST + 300} 1200100)"

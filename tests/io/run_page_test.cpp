@@ -132,7 +132,7 @@ TEST_F(Tables, ObjectsHaveTheirClassByName) {
   const std::string html = objects_html(part, false, {"none", "low", "high & steep"}).text();
   EXPECT_THAT(html, HasSubstr("<th>class</th><th>from</th>"));
   EXPECT_THAT(html, HasSubstr("<td>high &amp; steep</td><td>a</td>"));
-  EXPECT_THAT(html, HasSubstr("<td>none</td><td></td>"));
+  EXPECT_THAT(html, HasSubstr("<td>none in this run</td><td></td>"));
   EXPECT_THAT(html, HasSubstr("<td></td><td></td>"));  // a number without a name
   EXPECT_THAT(html, HasSubstr("<td>gap</td><td colspan='4'>"));
   EXPECT_THAT(objects_html(part, false).text(), Not(HasSubstr("<th>class</th>")));
@@ -264,7 +264,7 @@ TEST(ObjectsTable, SaysWhatIsNotAssessed) {
   };
   EXPECT_THAT(text(), HasSubstr("<tr><td>km 1.6 (67 % of it not assessed: the DEM has no height there)</td>"
                                 "<td class='n'>0 [0 or more]</td><td class='n'>not known</td>"));
-  EXPECT_THAT(text(), HasSubstr("<td>none or higher</td>"));
+  EXPECT_THAT(text(), HasSubstr("<td>none or higher in this run</td>"));
   object.frequency = 0.1, object.low = 0.05;
   EXPECT_THAT(text(), HasSubstr("0.1 [0.05 or more]</td><td class='n'>10 [20 or less]</td>"));
   object.high = 0.2, object.hazard_class.high = 1;

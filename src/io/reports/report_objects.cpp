@@ -141,10 +141,12 @@ std::string class_text(const ObjectsPart::Class& of, const std::vector<std::stri
   return name(of.here) + (low == high ? "" : " [" + low + " to " + high + "]");
 }
 
-/// "high", or "high; at the first touch medium" where that class differs.
+/// "high", or "high; at the first touch medium" where that class differs; "none in this run" where no block has hit.
 std::string classes_text(const ObjectsPart::Object& object, const std::vector<std::string>& classes) {
   const std::string largest = class_text(object.hazard_class, classes), entry = class_text(object.entry_class, classes);
-  return entry.empty() || entry == largest ? largest : largest + "; at the first touch " + entry;
+  if (largest.empty()) return {};
+  return (entry.empty() || entry == largest ? largest : largest + "; at the first touch " + entry) +
+         (object.frequency > 0.0 ? "" : " in this run");
 }
 
 /// The three sources with the largest shares, which are the first: "cliff 39 37.7 %; cliff 31 21.9 %; cliff 34 7.33 %;
