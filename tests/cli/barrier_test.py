@@ -1,4 +1,5 @@
 """Barriers: their design from the crossings of a run, and their effect on the blocks of a run."""
+import itertools
 import json
 import math
 import os
@@ -506,27 +507,29 @@ class Weights(Case):
         told = [float(number) for number in re.findall(r"[0-9.]+(?= \[| kJ\)| m\))", notes[0])]
         for said, value in zip(told, (energy, design["SEL"], centre, design["h_i"]), strict=True):
             self.assertAlmostEqual(said / value, 1.0, 2)
-        low = self.report("--volume", "500", "--gTr", "1", "--gDp", "1")  # half of such a block is more than any jump
-        tall = self.report("--volume", "2", "--gTr", "1", "--gDp", "1")
-        for report, wanted in ((low, []), (tall, ["its centre"])):
+
+    def test_which_values_of_a_design_are_exceeded_too_often(self):
+        """By the bounds of what comes once in the longest of the return periods; SEL and h_i each for itself."""
+        self.run_well("run", self.scenario, "-o", self.path("out"))
+        small, tall, large = (("--gTr", factor, "--gDp", "1", "--volume", volume)
+                              for factor, volume in (("1", "0.01"), ("1", "2"), ("3", "500")))
+        seen = set()
+        for arguments, years in itertools.product((small, tall, large), ("0.01", "4.93", "1000000")):
+            report = self.report(*arguments, "--return-periods", years)
             design = {row["name"]: row["value"] for row in report["design"]}
-            rarest = report["once_in"][-1]
-            notes = [note for note in report["notes"] if note.startswith("blocks exceed this design")]
-            above = [word for word, key, name in (("SEL", "energy_kj", "SEL"), ("its centre", "centre_height_m", "h_i"))
-                     if rarest[key]["value"] > design[name]]
-            self.assertEqual(above, wanted)
-            self.assertEqual(len(notes), len(wanted) and 1)
-            for word in ("SEL", "its centre"):
-                self.assertEqual(word in " ".join(notes), word in wanted)
-        unknown = self.report("--volume", "0.01", "--gTr", "1", "--gDp", "1", "--return-periods", "1000000")
-        self.assertIsNone(unknown["once_in"][-1]["energy_kj"]["high"])
-        self.assertIn('a bound "?" is not known: run more trajectories first', " ".join(unknown["notes"]))
-        may = self.report("--volume", "500", "--return-periods", "1000000")  # larger than any value of the run
-        self.assertIn("blocks may exceed this design more often than once in 1\xa0000\xa0000 years", " ".join(may["notes"]))
-        rare = self.report("--volume", "0.01", "--gTr", "1", "--gDp", "1", "--return-periods", "0.01")
-        large = self.report("--volume", "500", "--gTr", "3", "--return-periods", "4.93")
-        for report in (rare, large):  # crossings are rarer than once in 0.01 years
-            self.assertFalse([note for note in report["notes"] if "more often" in note])
+            pairs = [("SEL", report["once_in"][0]["energy_kj"], design["SEL"]),
+                     ("its centre", report["once_in"][0]["centre_height_m"], design["h_i"])]
+            above = tuple(word for word, value, limit in pairs if value["high"] is None or value["high"] > limit)
+            surely = any(value["value"] > limit for _, value, limit in pairs)
+            notes = [note for note in report["notes"] if "exceed this design" in note]
+            self.assertEqual(len(notes), 1 if above else 0)
+            for word, _, _ in pairs:
+                self.assertEqual(word in "".join(notes), word in above)
+            self.assertEqual("blocks may exceed" in "".join(notes), bool(above) and not surely)
+            unknown = any(value["high"] is None for _, value, _ in pairs)
+            self.assertEqual('"?" is not known: run more trajectories' in "".join(notes), unknown)
+            seen.add((above, surely))
+        self.assertEqual(seen, {((), False), (("SEL", "its centre"), True), (("its centre",), True), (("SEL", "its centre"), False)})
 
     def test_values_by_return_period(self):
         self.run_well("run", self.scenario, "-o", self.path("out"))

@@ -257,25 +257,23 @@ std::string value_once_text(const Bounded& b) {
 
 std::optional<std::string> often_note(const BarrierReport& r) {
   if (r.once_in.empty()) return std::nullopt;
-  const OnceIn& rarest = r.once_in.back();
+  const auto& [rarest, energy, jump, centre, speed] = r.once_in.back();
   const double sel = r.design.sel * 1e-3, height = r.design.height;
-  const bool exceeded = rarest.energy.value > sel || rarest.centre.value > height;
   std::vector<std::string> texts;
-  if (exceeded ? rarest.energy.value > sel : rarest.energy.high > sel)
-    texts.push_back("with " + value_once_text(rarest.energy) + " kJ (SEL " + with_digits(sel, 4) + " kJ)");
-  if (exceeded ? rarest.centre.value > height : rarest.centre.high > height)
-    texts.push_back("with its centre " + value_once_text(rarest.centre) + " m above the ground (h_i " +
+  if (energy.high > sel)
+    texts.push_back("with " + value_once_text(energy) + " kJ (SEL " + with_digits(sel, 4) + " kJ)");
+  if (centre.high > height)
+    texts.push_back("with its centre " + value_once_text(centre) + " m above the ground (h_i " +
                     with_digits(height, 4) + " m)");
   if (texts.empty()) return std::nullopt;
-  const std::string years = "once in " + readable(rarest.years) + " years";
-  return "blocks " + std::string(exceeded ? "" : "may ") + "exceed this design more often than " + years + ": " +
-         years + " one passes " + texts.front() + (texts.size() > 1 ? ", one " + texts.back() : "") +
-         ". The design holds a share of the blocks, however many fall. If that is too often, build for the upper "
-         "bound, "
-         "which has no safety factor, or for another note's value if that is higher" +
-         (std::isfinite(rarest.energy.high) && std::isfinite(rarest.centre.high)
-              ? ""
-              : "; a bound \"?\" is not known: run more trajectories first");
+  const std::string years = "once in " + readable(rarest) + " years",
+                    may = energy.value > sel || centre.value > height ? "" : "may ";
+  const bool known = std::isfinite(energy.high) && std::isfinite(centre.high);
+  return "blocks " + may + "exceed this design more often than " + years + ": " + years + " one passes " +
+         texts.front() + (texts.size() > 1 ? ", one " + texts.back() : "") +
+         ". The design holds a share of the blocks, however many fall. If that is too often, build for the "
+         "upper bounds, which have no safety factors, or for another note's value if that is higher" +
+         (known ? "" : "; a bound \"?\" is not known: run more trajectories first");
 }
 
 std::string frequency_text(const Reliability::Limit& l) {
