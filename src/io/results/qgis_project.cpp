@@ -162,7 +162,7 @@ std::vector<std::pair<std::string, std::string>> titles_of(const std::vector<std
 
 /// A title with what the settings of the run say: the lowest threshold, and which energy counts.
 std::string title_in_run(std::string title, const ProjectLayer& layer, const std::vector<Setting>& settings) {
-  std::string threshold = kUnknownThreshold;
+  std::string threshold = "the lowest threshold";  // of a run whose record lacks it
   for (const Setting& setting : settings) {
     if (setting.key == layer.thresholds) {
       const Json values = Json::parse(setting.value, nullptr, false);  // "[30, 300]", in ascending order

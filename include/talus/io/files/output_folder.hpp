@@ -52,8 +52,8 @@ class OutputFolder {
   /// Throws InputError if `file` lies in a folder that `commit` would replace: an input must not be deleted.
   void protect(const std::filesystem::path& file) const;
 
-  /// What later commands (hazard, barrier, report) have added to the results that `commit` would replace; empty where
-  /// they have added nothing.
+  /// A line that names the files of later commands (hazard, barrier, report) which `commit` would remove; empty if
+  /// there are none.
   std::string later_results_note() const;
 
   /// Brings all files to the disk and gives the folder its name, if that is still free or may be overwritten. An

@@ -44,8 +44,6 @@ struct ProjectLayer {
   std::string thresholds{};    ///< setting of the run, whose lowest number <threshold> is: "output.energy_thresholds"
   std::string style{};         ///< of a mark over the map of the file; without this style there is no layer
 };
-/// What <threshold> is where the record of the run does not say it.
-inline constexpr const char* kUnknownThreshold = "the lowest threshold";
 /// From the top of the group downwards.
 const std::vector<ProjectLayer>& project_layers();
 
