@@ -267,8 +267,8 @@ Markup families_sentence(const DiagnosisRound& round, double level) {
   Markup text;
   for (const FamilyTest& family : round.families) {
     if (family.p_corrected <= level)
-      text += Markup() + (text.empty() ? " What is left depends on: " : ", ") + "<b>" + family.name + "</b> (p " +
-              with_digits(family.p_corrected, 2) + " corrected)";
+      text += Markup() + (text.empty() ? " The residual before this round depends on: " : ", ") + "<b>" + family.name +
+              "</b> (p " + with_digits(family.p_corrected, 2) + " corrected)";
   }
   if (!text.empty()) text += ".";
   for (const FamilyTest& family : round.families)
@@ -318,9 +318,9 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
       "normal number. Grey: 95 % of the points of a right model.</p>\n<h2>Rounds</h2>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i) {
     const double level = record.options.level_of_round(i);
-    html += "<p>Round "_html + std::to_string(i + 1) + ": " + sentence(d.rounds[i], level) +
-            " (Smallest corrected p of a family: " + with_decimals(d.rounds[i].p_value, 4) + ".)" +
-            residual_sentence(d.rounds[i], level) + families_sentence(d.rounds[i], level) + "</p>\n";
+    html += "<p>Round "_html + std::to_string(i + 1) + ":" + families_sentence(d.rounds[i], level) +
+            residual_sentence(d.rounds[i], level) + " " + sentence(d.rounds[i], level) +
+            " (Smallest corrected p of a family: " + with_decimals(d.rounds[i].p_value, 4) + ".)</p>\n";
   }
   if (const std::string undecided = undecided_text(d.stability); !undecided.empty())
     html += "<p><b>The first round is "_html + undecided + "</b>: independent base fits differ.</p>\n";
