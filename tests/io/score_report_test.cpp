@@ -121,7 +121,9 @@ TEST(ScoreWarnings, OfBlocksWithoutAPlaceOfRestThatStayInTheModel) {
       judgement_lines(rows).find("by the model 0.3 of 24 blocks leave the DEM, at most 9 did: p 1; if all of them "
                                  "did, p 2e-09; run-outs are compared with trials that stay *\n"),
       std::string::npos);
-  rows.leaving_trials.p_if_all_left = 0.02;
+  rows.leaving_trials = {24, 2, 0.0, 1.0, 1e-5};  // two were not found
+  EXPECT_TRUE(score_warnings(rows).empty());
+  rows.leaving_trials = {24, 9, 5.0, 1.0, 0.02};
   EXPECT_TRUE(score_warnings(rows).empty());
   rows.leaving_trials = {24, 24, 0.0, 1.0, 0.0};  // nobody mapped where they stopped
   EXPECT_TRUE(score_warnings(rows).empty());

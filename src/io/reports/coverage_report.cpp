@@ -10,7 +10,8 @@ namespace talus::io {
 namespace {
 
 constexpr int kHistogramWidth = 210, kHistogramHeight = 130, kHistogramMargin = 26;  // of a histogram [px]
-constexpr int kHistogramsInRow = 4, kHeadingHeight = 30;                             // of a picture [px]
+constexpr double kManyMissing = 0.1;                      // of the blocks: some stops are seldom found
+constexpr int kHistogramsInRow = 4, kHeadingHeight = 30;  // of a picture [px]
 
 std::string whole_percent(double share) {
   return with_decimals(100.0 * share, 0);
@@ -90,7 +91,9 @@ std::string leaving_text(const LeavingTest& t) {
 
 std::string too_few_leave(const ScoredRows& scored) {
   const LeavingTest& t = scored.leaving_trials;
-  if (!(t.p_if_all_left < kWrongSpread) || t.missing == t.blocks) return {};
+  const double more = static_cast<double>(t.missing) - t.expected;
+  if (!(t.p_if_all_left < kWrongSpread) || t.missing == t.blocks || more < kManyMissing * static_cast<double>(t.blocks))
+    return {};
   return std::to_string(t.missing) + " of " + std::to_string(t.blocks) + " " + rows_in_words(scored.rows) +
          " blocks have no place of rest; if they left the DEM, the ground stops blocks too early (unsafe): by the "
          "model " +
@@ -136,10 +139,10 @@ std::string coverage_lines(const ScoredRows& scored) {
     text += "\n";
   });
   const std::string leaving = leaving_sentence(scored), side = runout_side(scored);
-  const LeavingTest& t = scored.leaving_trials;
   if (!side.empty()) text += side + "\n";
   if (leaving.empty()) return text;
-  return text + leaving + (std::min(t.p_value, t.p_if_all_left) < kWrongSpread ? " *" : "") + "\n";
+  return text + leaving + (scored.leaving_trials.p_value < kWrongSpread || !too_few_leave(scored).empty() ? " *" : "") +
+         "\n";
 }
 
 std::string coverage_markdown(const std::vector<Coverage>& list) {
