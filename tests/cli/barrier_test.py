@@ -544,7 +544,8 @@ class Weights(Case):
         text = self.run_well("barrier", self.path("out"), "--screen", "road", "--return-periods", "100000").stdout
         self.assertRegex(text, "100\xa0000" r" years +energy [0-9.]+ \[[0-9.]+, \?\] kJ")
         self.assertEqual(self.report("--unweighted")["once_in"], [])
-        for given, said in (("0", "--return-periods = 0: must be above 0"), ("2e6", "--return-periods = 2000000: must be")):
+        for given, said in (("1e-9", "--return-periods = 1e-09: must be 0.001 to"), ("2e6", "--return-periods = 2000000: must be"),
+                            ("30,100,30.0", "--return-periods: 30 is given twice")):
             self.fails(2, said, arguments=["barrier", self.path("out"), "--return-periods", given])
         self.fails(2, "--return-periods: every block counts alike, as --unweighted asks: give the sources a field frequency",
                    arguments=["barrier", self.path("out"), "--unweighted", "--return-periods", "30"])

@@ -34,6 +34,16 @@ DiagnosisRecord record_of(double first_level, double later_level) {
   return record;
 }
 
+/// The score of a model, two rows of each block.
+Score score_of_blocks(std::uint32_t blocks, double each = 0.5) {
+  Score score;
+  score.groups = {{"stop", each, blocks}, {"speed S1", each, blocks}};
+  for (std::uint32_t group = 0; group < 2; ++group)
+    for (std::uint32_t block = 0; block < blocks; ++block) score.rows.push_back({group, block, each});
+  score.total = each;
+  return score;
+}
+
 std::size_t count_of(const std::string& text, const std::string& part) {
   std::size_t count = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
@@ -94,14 +104,40 @@ TEST(DiagnosisPage, SaysWhatFurtherSpeedsWouldShow) {
 TEST(DiagnosisPage, AsksForMoreBlocksByWhatTheVerdictRestsOn) {
   DiagnosisRecord record = record_of(0.05, 0.01);
   record.errors.resize(2);  // of 24 fitting rows and no held-out ones
-  record.errors[0].after.blocks = 24;
+  record.errors[0].after.score = score_of_blocks(24);
   record.unseen = 1;
   EXPECT_TRUE(says(record, "More blocks: 24 were fitted."));
   EXPECT_FALSE(says(record, "the gain rests on"));
-  record.errors[1].after.blocks = 12;
+  record.errors[1].after.blocks = 24;  // half of them left the DEM
+  record.errors[1].after.score = score_of_blocks(12);
   record.diagnosis.rounds.front().effect = "soft-ground";
   record.diagnosis.rounds.front().candidates.resize(1);
   EXPECT_TRUE(says(record, "More blocks: the gain rests on 12 of them."));
+}
+
+/// Whether the model can be used is said before what the effect gained, which says nothing of that.
+TEST(DiagnosisPage, SaysWhetherTheModelPredicts) {
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  ScoredRows& after = record.errors[0].after;
+  after.rows = "holdout";
+  after.blocks = 12;
+  after.score = after.compared = score_of_blocks(12, 0.8);
+  after.climatology = score_of_blocks(12, 1.0);
+  record.whole.before = 0.8;
+  const auto with_skill = [&](double share, double low) {
+    after.skill = {share, {low, share + 0.1}};
+    return summary_html(record).text();
+  };
+  EXPECT_NE(with_skill(0.2, 0.05).find("<b>Yes.</b> On held-out rows: skill 20.0 %"), std::string::npos);
+  EXPECT_NE(with_skill(0.2, -0.05).find("<b>Not shown.</b> On held-out rows: skill 20.0 %"), std::string::npos);
+  EXPECT_NE(with_skill(-0.2, -0.3).find("<b>No: do not take it for a map.</b> On held-out rows: no skill"),
+            std::string::npos);
+  EXPECT_NE(with_skill(kNotGiven, kNotGiven).find("It cannot be said."), std::string::npos);
+  after.coverage.push_back({.observable = "runout", .rows = 24});
+  after.coverage[0].below[1] = {.count = 7, .expected = {8.0, 16.0}};
+  EXPECT_NE(with_skill(0.2, 0.05).find("<b>71 % of 24 held-out blocks ran farther than the model's median (of a right "
+                                       "model 33 to 67 %): the model may stop blocks too early (unsafe)</b>."),
+            std::string::npos);
 }
 
 /// Folds that took the choice of all rows say so: asked for by --quick-folds, or because the diagnosis is costly, with
@@ -135,7 +171,7 @@ TEST(DiagnosisPage, SaysThatQuickFoldsTookTheChoiceOfAllRows) {
 }
 
 TEST(DiagnosisPage, NamesFamiliesByTheLevelOfTheRound) {
-  const std::string depends = "What is left depends on: <b>place</b>",
+  const std::string depends = "The residual before this round depends on: <b>place</b>",
                     noise = "Nothing is left that differs from noise.";
   const auto page = [](double first, double later) { return diagnosis_page(Campaign{}, record_of(first, later)); };
   EXPECT_EQ(count_of(page(0.05, 0.01), depends), 0U);

@@ -106,6 +106,46 @@ TEST(ScoreWarnings, OfBlocksThatCameToRestButLeaveInTheModel) {
             0U);
 }
 
+/// Blocks that left the DEM have no place of rest: a model that keeps all of them on it is too short. Unless nobody
+/// looked for them, so that the words say "if".
+TEST(ScoreWarnings, OfBlocksWithoutAPlaceOfRestThatStayInTheModel) {
+  ScoredRows rows;
+  rows.rows = "fit";
+  rows.blocks = 24;
+  rows.leaving_trials = {24, 9, 0.3, 1.0, 2e-9};
+  ASSERT_EQ(score_warnings(rows).size(), 1U);
+  EXPECT_EQ(score_warnings(rows)[0].find("9 of 24 fitting blocks have no place of rest; if they left the DEM, the "
+                                         "ground stops blocks too early (unsafe): by the model 0.3 leave it (p 2e-09)"),
+            0U);
+  EXPECT_NE(
+      judgement_lines(rows).find("by the model 0.3 of 24 blocks leave the DEM, at most 9 did: p 1; if all of them "
+                                 "did, p 2e-09; run-outs are compared with trials that stay *\n"),
+      std::string::npos);
+  rows.leaving_trials.p_if_all_left = 0.02;
+  EXPECT_TRUE(score_warnings(rows).empty());
+  rows.leaving_trials = {24, 24, 0.0, 1.0, 0.0};  // nobody mapped where they stopped
+  EXPECT_TRUE(score_warnings(rows).empty());
+}
+
+/// The middle run-out alone: its side is what a hazard map hangs on, and the correction for all shares hides it.
+TEST(JudgementLines, SayToWhichSideTheMiddleRunOutErrs) {
+  ScoredRows rows;
+  rows.rows = "holdout";
+  rows.coverage.push_back({.observable = "runout", .rows = 20});
+  ShareBelow& below = rows.coverage[0].below[1];
+  below = {.count = 6, .expected = {6.0, 14.0}};
+  EXPECT_EQ(judgement_lines(rows).find("median"), std::string::npos);
+  below.count = 5;
+  EXPECT_NE(
+      judgement_lines(rows).find("75 % of 20 held-out blocks ran farther than the model's median (of a right model "
+                                 "30 to 70 %): the model may stop blocks too early (unsafe)\n"),
+      std::string::npos);
+  below.count = 15;
+  EXPECT_NE(judgement_lines(rows).find("75 % of 20 held-out blocks ran less far than the model's median (of a right "
+                                       "model 30 to 70 %): the model may let blocks go too far\n"),
+            std::string::npos);
+}
+
 /// Twelve blocks, all at rest; four crossed S1, with a speed but no jump: nothing of S1 is scored, and that is said.
 TEST(Scored, NamesWhatWasMeasuredTooSeldom) {
   Campaign campaign;

@@ -52,8 +52,7 @@ constexpr Bounds kContainment{"--containment", "%", "share of the crossings that
                               1.0, 100.0};
 constexpr Bounds kStretch{"--stretch", "m", "longest stretch with a design of its own", 1.0, 1e6};
 constexpr Bounds kVolume{"--volume", "m3", "of the design block", 0.0, 65000.0, Bounds::AboveMin};
-constexpr Bounds kYears{"--return-periods", "years", "years in which the values are reached once", 0.0, 1e6,
-                        Bounds::AboveMin};
+constexpr Bounds kYears{"--return-periods", "years", "years in which the values are reached once", 0.001, 1e6};
 constexpr Bounds kDensity{"--density", "kg/m3", "mass per volume of the rock", 500.0, 8000.0};
 
 void refuse_out_of(const Bounds& bounds, double value) {
@@ -76,7 +75,11 @@ void check_numbers(const BarrierOptions& o) {
       {kDensity, o.density}};
   for (const auto& [bounds, value] : all)
     if (value) refuse_out_of(bounds, *value);
-  for (const double years : o.years) refuse_out_of(kYears, years);
+  for (auto years = o.years.begin(); years != o.years.end(); ++years) {
+    refuse_out_of(kYears, *years);
+    if (std::find(o.years.begin(), years, *years) != years)
+      throw talus::InputError("--return-periods: " + talus::text_of(*years) + " is given twice: give each once");
+  }
 }
 
 /// Throws InputError if the crossings have no frequencies, from which alone return periods follow.

@@ -4,6 +4,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "fitting_values.hpp"
 #include "talus/fit/campaign/block_draws.hpp"
@@ -142,9 +143,9 @@ LeavingTest leaving_test(const Campaign& campaign, std::span<const BlockRuns> ru
     law[0] *= 1.0 - p;
   }
   if (out.blocks < kFewestRows) return out;
-  out.p_value = 0.0;
-  for (std::size_t n = 0; n <= out.missing; ++n) out.p_value += law[n];
-  out.p_value = std::min(1.0, out.p_value);
+  const auto first = law.begin(), missing = first + static_cast<std::ptrdiff_t>(out.missing);
+  out.p_value = std::min(1.0, std::accumulate(first, missing + 1, 0.0));
+  out.p_if_all_left = std::min(1.0, std::accumulate(missing, law.end(), 0.0));
   return out;
 }
 

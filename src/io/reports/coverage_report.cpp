@@ -83,12 +83,41 @@ std::string meaning(std::size_t i, bool too_many) {
 std::string leaving_text(const LeavingTest& t) {
   return "by the model " + with_decimals(t.expected, 1) + " of " + std::to_string(t.blocks) +
          " blocks leave the DEM, " + (t.missing == 0 ? "none did" : "at most " + std::to_string(t.missing) + " did") +
-         ": p " + with_digits(t.p_value, 2);
+         ": p " + with_digits(t.p_value, 2) +
+         (static_cast<double>(t.missing) > t.expected ? "; if all of them did, p " + with_digits(t.p_if_all_left, 2)
+                                                      : "");
+}
+
+std::string too_few_leave(const ScoredRows& scored) {
+  const LeavingTest& t = scored.leaving_trials;
+  if (!(t.p_if_all_left < kWrongSpread) || t.missing == t.blocks) return {};
+  return std::to_string(t.missing) + " of " + std::to_string(t.blocks) + " " + rows_in_words(scored.rows) +
+         " blocks have no place of rest; if they left the DEM, the ground stops blocks too early (unsafe): by the "
+         "model " +
+         with_decimals(t.expected, 1) + " leave it (p " + with_digits(t.p_if_all_left, 2) +
+         "); a fit to the run-outs of the others makes that worse: give the stops that are known, and fit on a DEM "
+         "that holds all of them";
+}
+
+std::string runout_side(const ScoredRows& scored) {
+  const auto runout = std::ranges::find(scored.coverage, "runout", &Coverage::observable);
+  if (runout == scored.coverage.end()) return {};
+  constexpr std::size_t kMedian = 1;
+  const ShareBelow& below = runout->below[kMedian];
+  const bool too_short = below.count < below.expected.low;
+  if (!too_short && !(below.count > below.expected.high)) return {};
+  const double rows = runout->rows, share = runout->share(kMedian);
+  const Interval right = {below.expected.low / rows, below.expected.high / rows};
+  return whole_percent(too_short ? 1.0 - share : share) + " % of " + std::to_string(runout->rows) + " " +
+         rows_in_words(scored.rows) + " blocks ran " + (too_short ? "farther" : "less far") +
+         " than the model's median (of a right model " + whole_percent(too_short ? 1.0 - right.high : right.low) +
+         " to " + whole_percent(too_short ? 1.0 - right.low : right.high) + " %): the model may " +
+         (too_short ? "stop blocks too early (unsafe)" : "let blocks go too far");
 }
 
 std::string leaving_sentence(const ScoredRows& scored) {
   const LeavingTest& t = scored.leaving_trials;
-  if (std::isnan(t.p_value) || !(t.expected > 0.0) || t.missing == t.blocks) return {};
+  if (std::isnan(t.p_value) || (!(t.expected > 0.0) && t.missing == 0) || t.missing == t.blocks) return {};
   return rows_in_words(scored.rows) + " rows: " + leaving_text(t) +
          (t.missing == 0 ? "" : "; run-outs are compared with trials that stay");
 }
@@ -106,8 +135,11 @@ std::string coverage_lines(const ScoredRows& scored) {
       text += "  " + (i + 1 < cells.size() ? padded(cells[i], 18) : cells[i]);
     text += "\n";
   });
-  const std::string leaving = leaving_sentence(scored);
-  return text + leaving + (scored.leaving_trials.p_value < kWrongSpread ? " *" : "") + (leaving.empty() ? "" : "\n");
+  const std::string leaving = leaving_sentence(scored), side = runout_side(scored);
+  const LeavingTest& t = scored.leaving_trials;
+  if (!side.empty()) text += side + "\n";
+  if (leaving.empty()) return text;
+  return text + leaving + (std::min(t.p_value, t.p_if_all_left) < kWrongSpread ? " *" : "") + "\n";
 }
 
 std::string coverage_markdown(const std::vector<Coverage>& list) {
@@ -140,7 +172,8 @@ Json json_of(const LeavingTest& test) {
   return {{"blocks", test.blocks},
           {"without_place_of_rest", test.missing},
           {"expected", json_of(test.expected)},
-          {"p_value", json_of(test.p_value)}};
+          {"p_value", json_of(test.p_value)},
+          {"p_value_if_all_left", json_of(test.p_if_all_left)}};
 }
 
 Json json_of(const std::vector<Coverage>& list) {

@@ -21,6 +21,11 @@ Markup coverage_html(const std::vector<Coverage>& list);
 std::string leaving_sentence(const ScoredRows& scored);
 /// Words on the test alone: "by the model 8.4 of 50 blocks leave the DEM, none did: p 9e-05".
 std::string leaving_text(const LeavingTest& test);
+/// Says where the model lets too few blocks leave the DEM, if all without a place of rest left it. Empty elsewhere.
+std::string too_few_leave(const ScoredRows& scored);
+/// Says where the middle run-out of the model is too short or too long. Empty where the share beyond it is that of a
+/// right model (95 %).
+std::string runout_side(const ScoredRows& scored);
 Json json_of(const LeavingTest& test);
 /// Warnings, one for each share that a right model does not give.
 std::vector<std::string> coverage_warnings(const ScoredRows& scored);

@@ -16,8 +16,8 @@ std::string p_text(const PatternDistance& pattern) {
 
 std::string sentence_of(const std::string& rows, const PatternDistance& pattern) {
   return rows + " rows: " + pattern.group + ": energy distance of the patterns " + with_decimals(pattern.distance, 2) +
-         " m (" + with_decimals(100.0 * pattern.share, 1) +
-         " % of what it can be; 0 on average for a right model, so often below 0), " + p_text(pattern) + ", " +
+         " m, " + with_decimals(100.0 * pattern.share, 1) +
+         " % of its largest value (a right model scatters about 0), " + p_text(pattern) + ", " +
          std::to_string(pattern.blocks) + " blocks";
 }
 

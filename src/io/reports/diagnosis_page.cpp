@@ -18,6 +18,10 @@ namespace {
 constexpr int kPlotWidth = 330, kPlotHeight = 190, kMargin = 34;  // of a plot [px]
 constexpr double kHighestZ = 3.5;                                 // z at the rim of a plot
 constexpr std::size_t kPlots = 6;
+constexpr char kAboutPoints[] =
+    "<p>Each point is a block; z is where its measurement lies among what the model simulates for it, as a standard "
+    "normal number: above 0 it is larger than most of the simulated ones. Grey: 95 % of the points of a right "
+    "model.</p>\n";
 
 std::string reduction_text(const Reduction& r) {
   if (std::isnan(r.share)) return "-";
@@ -84,6 +88,7 @@ Markup plot(const Points& points, const std::string& title, const std::string& b
                            {"fill-opacity", 0.7}});
   for (const double z : {-2.0, 0.0, 2.0})
     svg.words({{"x", kMargin - 4}, {"y", y(z) + 4.0}, {"text-anchor", "end"}}, with_digits(z, 6));
+  svg.words({{"x", kMargin - 4}, {"y", y(kHighestZ) + 4.0}, {"text-anchor", "end"}}, "z");
   svg.words({{"x", kMargin}, {"y", kPlotHeight - 18}}, with_digits(low, 4));
   svg.words({{"x", kPlotWidth - kMargin}, {"y", kPlotHeight - 18}, {"text-anchor", "end"}}, with_digits(high, 4));
   svg.words({{"x", kPlotWidth / 2}, {"y", 14}, {"text-anchor", "middle"}, {"font-weight", "bold"}}, title);
@@ -267,8 +272,8 @@ Markup families_sentence(const DiagnosisRound& round, double level) {
   Markup text;
   for (const FamilyTest& family : round.families) {
     if (family.p_corrected <= level)
-      text += Markup() + (text.empty() ? " What is left depends on: " : ", ") + "<b>" + family.name + "</b> (p " +
-              with_digits(family.p_corrected, 2) + " corrected)";
+      text += Markup() + (text.empty() ? " The residual before this round depends on: " : ", ") + "<b>" + family.name +
+              "</b> (p " + with_digits(family.p_corrected, 2) + " corrected)";
   }
   if (!text.empty()) text += ".";
   for (const FamilyTest& family : round.families)
@@ -312,15 +317,13 @@ Markup warning_lines(const DiagnosisRecord& record) {
 
 std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
-  Markup html =
-      summary_html(record) + warning_lines(record) + plots(campaign, d, record.options.rules, 1) +
-      "<p>Each point is a block; z is where its measurement lies among what the model simulates for it, as a standard "
-      "normal number. Grey: 95 % of the points of a right model.</p>\n<h2>Rounds</h2>\n";
+  Markup html = summary_html(record) + warning_lines(record) + plots(campaign, d, record.options.rules, 1) +
+                kAboutPoints + "<h2>Rounds</h2>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i) {
     const double level = record.options.level_of_round(i);
-    html += "<p>Round "_html + std::to_string(i + 1) + ": " + sentence(d.rounds[i], level) +
-            " (Smallest corrected p of a family: " + with_decimals(d.rounds[i].p_value, 4) + ".)" +
-            residual_sentence(d.rounds[i], level) + families_sentence(d.rounds[i], level) + "</p>\n";
+    html += "<p>Round "_html + std::to_string(i + 1) + ":" + families_sentence(d.rounds[i], level) +
+            residual_sentence(d.rounds[i], level) + " " + sentence(d.rounds[i], level) +
+            " (Smallest corrected p of a family: " + with_decimals(d.rounds[i].p_value, 4) + ".)</p>\n";
   }
   if (const std::string undecided = undecided_text(d.stability); !undecided.empty())
     html += "<p><b>The first round is "_html + undecided + "</b>: independent base fits differ.</p>\n";
@@ -345,10 +348,8 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
       "after the ground has been fitted anew: 4.5 standard errors of a linear test. "
       "Effects that do not grow linearly are seen from larger amounts on (on one synthetic campaign the printed amounts had 1.8 to 4.9).</p>\n"_html +
       limits_html(d.rounds.back().limits);
-  html +=
-      "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "
-      "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n"_html +
-      plots(campaign, d, record.options.rules, kPlots) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual);
+  html += "<h2>Residuals</h2>\n"_html + kAboutPoints + plots(campaign, d, record.options.rules, kPlots) +
+          "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual);
   if (d.rounds.size() > 1) html += "<h3>After</h3>\n"_html + residual_rows(d.rounds.back().residual);
   const std::string footer = "seed " + std::to_string(record.options.seed) + ", " + record.surface + " surface, " +
                              with_decimals(record.seconds, 0) + " s";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "evidence.hpp"
 #include "talus/base/text.hpp"
@@ -100,19 +101,44 @@ Markup sure(const DiagnosisRecord& record) {
                                         ", corrected for the number of families.";
   if (const std::string row = residual_text(first, record.options.later_level); !row.empty())
     text += (rare.empty() ? " But " : " And ") + row + ".";
-  if (found(first) && first.alike.empty()) text += " No other effect that passes the thresholds comes close to it.";
+  if (found(first) && first.alike.empty()) text += " No other effect that may be named explains it nearly as well.";
   for (const DiagnosisRound& round : d.rounds) text += gain_in_doubt(round);
   return Markup() + text + repeated(d.stability);
 }
 
-Markup gained(const DiagnosisRecord& record) {
-  const bool all = record.errors.empty() || small_groups(record).empty();
-  const HoldoutError& e = all ? record.whole : record.headline;
+bool in_all_groups(const DiagnosisRecord& record) {
+  return record.errors.empty() || small_groups(record).empty();
+}
+
+/// Why nothing can be said of unseen blocks; empty where something can.
+std::string no_unseen(const DiagnosisRecord& record) {
   if (!record.errors.empty() && record.errors[record.unseen].after.blocks == 0)
-    return "It cannot be said: no row was held out, and none was judged out of its fold (--nested does so)."_html;
-  if (std::isnan(e.before)) return "It cannot be said: no group of held-out rows is large enough."_html;
+    return "It cannot be said: no row was held out, and none was judged out of its fold (--nested does so).";
+  if (std::isnan((in_all_groups(record) ? record.whole : record.headline).before))
+    return "It cannot be said: no group of held-out rows is large enough.";
+  return "";
+}
+
+/// Whether the model found is nearer to unseen blocks than the measurements of others are, and to which side it errs.
+Markup predicts(const DiagnosisRecord& record) {
+  if (const std::string why = no_unseen(record); !why.empty()) return Markup() + why;
   ScoredRows rows = record.errors[record.unseen].after;
-  if (!all) rows = in_large_groups(std::move(rows), record.clusters);
+  const std::string side = runout_side(rows);
+  if (!in_all_groups(record)) rows = in_large_groups(std::move(rows), record.clusters);
+  const Reduction skill = skill_over_climatology(rows);
+  Markup text = std::isnan(skill.share)       ? "It cannot be said."_html
+                : !(skill.share > 0.0)        ? bold("No: do not take it for a map.")
+                : !(skill.interval.low > 0.0) ? bold("Not shown.")
+                                              : bold("Yes.");
+  if (const std::string sentence = skill_sentence(rows); !sentence.empty())
+    text += " On "_html + sentence + ". The climatology has no model: it takes what was measured of other blocks.";
+  if (!side.empty()) text += " "_html + bold(side) + ".";
+  return text;
+}
+
+Markup gained(const DiagnosisRecord& record) {
+  const HoldoutError& e = in_all_groups(record) ? record.whole : record.headline;
+  if (const std::string why = no_unseen(record); !why.empty()) return Markup() + why;
   const bool seen = choice_has_seen(record);
   Markup text = Markup() +
                 (seen ? "On blocks left out of the fits, but not of the choice of the effect, the error is "
@@ -131,8 +157,6 @@ Markup gained(const DiagnosisRecord& record) {
             " times as likely as with the ground alone (95 %: " + with_digits(std::exp(nats.interval.low), 3) + " to " +
             with_digits(std::exp(nats.interval.high), 3) + ")" +
             (nats.interval.low <= 0.0 ? ": there may be no gain." : ".");
-  if (!std::isnan(rows.climatology.total))
-    text += " The climatology has "_html + with_decimals(rows.climatology.total, 3) + ". " + skill_sentence(rows) + ".";
   return text;
 }
 
@@ -176,14 +200,21 @@ std::string further_speeds(std::span<const DetectionLimit> limits) {
   return words.empty() ? "" : "Speeds at more screens (12 were assumed): they " + in_a_sentence(words) + ". ";
 }
 
+/// Blocks of which something was scored: of others, as of those that left the DEM, nothing was measured that counts.
+std::size_t blocks_scored(const Score& score) {
+  std::set<std::uint32_t> blocks;
+  for (const auto& row : score.rows) blocks.insert(row.block);
+  return blocks.size();
+}
+
 /// Advice where few blocks were held out: with a finding, its gain rests on these; without, all that were fitted count.
 std::string more_blocks(const DiagnosisRecord& record) {
   if (record.errors.empty()) return "";
-  const std::size_t unseen = record.errors[record.unseen].after.blocks;
+  const std::size_t unseen = blocks_scored(record.errors[record.unseen].after.score);
   if (unseen >= kFewRows) return "";
   if (found(record.diagnosis.rounds.front()))
     return "More blocks: the gain rests on " + std::to_string(unseen) + " of them. ";
-  const std::size_t fitted = record.errors.front().after.blocks;
+  const std::size_t fitted = blocks_scored(record.errors.front().after.score);
   return fitted >= kFewRows ? "" : "More blocks: " + std::to_string(fitted) + " were fitted. ";
 }
 
@@ -206,6 +237,7 @@ Markup summary_html(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
   const std::pair<const char*, Markup> rows[] = {{"What is missing", missing(record)},
                                                  {"How sure that is", sure(record)},
+                                                 {"Does it predict", predicts(record)},
                                                  {"What was gained", gained(record)},
                                                  {"What could not be decided", Markup() + undecided(d)},
                                                  {"What to measure next", Markup() + next(record)}};

@@ -265,6 +265,10 @@ ScoredRows in_large_groups(ScoredRows scored, std::span<const std::uint32_t> clu
   return scored;
 }
 
+Reduction skill_over_climatology(const ScoredRows& scored) {
+  return rival_of(scored).skill;
+}
+
 std::string skill_sentence(const ScoredRows& s) {
   if (hardly_simulated(s.score))
     return rows_in_words(s.rows) + " rows: skill cannot be told: " + percent(unseen_share(s.score)) +
@@ -308,16 +312,18 @@ std::vector<std::string> unscored_warnings(const ScoredRows& s) {
   std::vector<std::string> warnings;
   for (const GroupScore& group : s.score.groups)
     if (2 * group.unseen > group.rows)
-      warnings.push_back(group.name + ": " + std::to_string(group.unseen) + " of " + std::to_string(group.rows) + " " +
-                         rows_in_words(s.rows) + " rows have fewer than " + std::to_string(kFewestSimulated) +
-                         " simulated values and score as the climatology: the model seldom does there what was "
-                         "measured, and the score says nothing of it (more trials may help)");
+      warnings.push_back(
+          group.name + ": " + std::to_string(group.unseen) + " of " + std::to_string(group.rows) + " " +
+          rows_in_words(s.rows) + " rows have fewer than " + std::to_string(kFewestSimulated) +
+          " simulated values and score as the climatology, so that the score says nothing of them: too few "
+          "trials, or the model seldom does there what was measured");
   return warnings;
 }
 
 std::vector<std::string> score_warnings(const ScoredRows& s) {
   std::vector<std::string> warnings = unscored_warnings(s);
-  if (std::string warning = leaving_warning(s); !warning.empty()) warnings.push_back(std::move(warning));
+  for (const std::string& warning : {leaving_warning(s), too_few_leave(s)})
+    if (!warning.empty()) warnings.push_back(warning);
   for (std::string& warning : coverage_warnings(s)) warnings.push_back(std::move(warning));
   return warnings;
 }

@@ -57,22 +57,23 @@ double random_rank(std::span<const double> simulated, double measured, double dr
 /// @param runs  by block of the campaign; those asked for must have been simulated
 std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask);
 
-/// Whether blocks leave the terrain more often in the model than they did.
+/// Whether blocks leave the terrain more often, or more seldom, in the model than they did.
 struct LeavingTest {
   std::size_t blocks = 0;      ///< asked ones
   std::size_t missing = 0;     ///< those that were not measured at rest: at most so many left
   double expected = 0.0;       ///< number of blocks that leave by the model: the sum of the shares of their trials
-  double p_value = kNotGiven;  ///< one-sided; NaN: fewer than five blocks, or mapped ones
+  double p_value = kNotGiven;  ///< that so few leave; NaN: fewer than five blocks, or mapped ones
+  double p_if_all_left = kNotGiven;  ///< that so many leave; counts only if all missing ones left
 };
 
-/// P-value: the probability that at most M of the blocks leave, M of which have no measured place of rest, where block
-/// b leaves with probability
+/// P-values: the probability that at most, and at least, M of the blocks leave, M of which have no measured place of
+/// rest, where block b leaves with probability
 ///
 ///   (k_b + m_b) / (n_b + 1)        k_b of its n_b trials left; m_b = 1 if it has no measured place of rest, else 0
 ///
 /// If all missing blocks have left, that is exact for any n_b: given n_b + 1 trajectories of a block, the measured one
-/// is equally likely to be each of them. A missing block that came to rest unseen makes the p-value too large, never
-/// too small.
+/// is equally likely to be each of them. A missing block that came to rest unseen makes `p_value` too large, never
+/// too small, and `p_if_all_left` too small.
 LeavingTest leaving_test(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask);
 
 }  // namespace talus

@@ -79,9 +79,12 @@ BeforeAfter compared(const Campaign& campaign, ScoredRows before, ScoredRows aft
 /// model, so that a fit can hide its errors there.
 std::vector<std::string> unscored_warnings(const ScoredRows& scored);
 
-/// These, one for blocks that leave the DEM, and one for each share of measured values below a simulated percentile
-/// that a right model does not give.
+/// These, one each for too many and too few blocks that leave the DEM, and one for each share of measured values below
+/// a simulated percentile that a right model does not give.
 std::vector<std::string> score_warnings(const ScoredRows& scored);
+
+/// The skill over the better climatology; NaN for a model that hardly simulates what was measured.
+Reduction skill_over_climatology(const ScoredRows& scored);
 
 /// Whether the model beats the climatology, in words: "no skill: ..." where it does not. Empty where nothing was
 /// scored.

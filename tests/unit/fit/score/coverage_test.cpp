@@ -166,12 +166,15 @@ TEST(Leaving, IsTheProbabilityThatSoFewLeave) {
   const LeavingTest none = leaving_test(c, runs, ask);
   EXPECT_NEAR(none.p_value, std::pow(1.0 - q, 24), 1e-15);
   EXPECT_NEAR(none.expected, 7.2, 1e-12);
+  EXPECT_NEAR(none.p_if_all_left, 1.0, 1e-12);
   c.blocks[7].stop.reset();
   const LeavingTest one = leaving_test(c, runs, ask);
   EXPECT_EQ(one.missing, 1U);
   EXPECT_NEAR(one.p_value, std::pow(1.0 - q, 23) + 23.0 * q * std::pow(1.0 - q, 22) * (1.0 - r), 1e-15);
+  EXPECT_NEAR(one.p_if_all_left, 1.0 - std::pow(1.0 - q, 23) * (1.0 - r), 1e-12);
   for (std::size_t b = 0; b < 24; ++b) c.blocks[b].stop.reset();
   EXPECT_NEAR(leaving_test(c, runs, ask).p_value, 1.0, 1e-12);  // all may have left
+  EXPECT_NEAR(leaving_test(c, runs, ask).p_if_all_left / std::pow(r, 24), 1.0, 1e-9);
   std::fill(ask.begin() + 4, ask.end(), false);
   EXPECT_TRUE(std::isnan(leaving_test(c, runs, ask).p_value));
 }
@@ -185,6 +188,7 @@ TEST(Leaving, OfARightModelIsSeldomRare) {
   Campaign c = campaign_on_slope(kBlocks);
   std::vector<BlockRuns> runs(kBlocks);
   std::array<int, 2> rare{};
+  int rare_if_all_left = 0;
   for (std::uint32_t set = 0; set < kSets; ++set)
     for (const bool unfound : {false, true}) {
       for (std::uint32_t b = 0; b < kBlocks; ++b) {
@@ -195,11 +199,15 @@ TEST(Leaving, OfARightModelIsSeldomRare) {
         c.blocks[b].stop = Eigen::Vector2d::Zero();
         if (uniform(random) < p || (unfound && uniform(random) < 0.5)) c.blocks[b].stop.reset();
       }
-      rare[unfound] += leaving_test(c, runs, std::vector<bool>(kBlocks, true)).p_value <= 0.05 ? 1 : 0;
+      const LeavingTest test = leaving_test(c, runs, std::vector<bool>(kBlocks, true));
+      rare[unfound] += test.p_value <= 0.05 ? 1 : 0;
+      rare_if_all_left += !unfound && test.p_if_all_left <= 0.05 ? 1 : 0;
     }
   EXPECT_LE(rare[0], 0.05 * kSets + 3.0 * std::sqrt(0.05 * 0.95 * kSets));
   EXPECT_GE(rare[0], 0.02 * kSets);  // counts are coarse: not much less than 5 %
   EXPECT_LT(rare[1], 0.01 * kSets);
+  EXPECT_LE(rare_if_all_left, 0.05 * kSets + 3.0 * std::sqrt(0.05 * 0.95 * kSets));
+  EXPECT_GE(rare_if_all_left, 0.02 * kSets);
 }
 
 /// A block of which too few trials stopped has no rank.
