@@ -5,7 +5,13 @@
 
 OUT is a folder of `talus run` in which `talus barrier OUT --screen ID` has been run. Every block, or piece of a broken one,
 counts once, with its first crossing. Bins with fewer than 20 blocks show no percentile. Grey: the designs by stretch. Needs
-numpy and matplotlib.
+numpy and matplotlib. The picture of real terrain (road, cliffs and frequencies are invented):
+
+  printf 'id,wkt\\nroad,"LINESTRING (248186 351348, 248553 351283, 248769 351435, 248986 351521, 249137 351759, 249158 351889)"\\n' > road.csv
+  T=../shared/data/terrain
+  talus run --dem $T/gar.tif --sources $T/gar_cliffs.shp --screens road.csv -o gar
+  talus barrier gar --screen road
+  tools/scripts/figures/barrier_picture.py gar --screen road -o gar_barrier.png --bin 20
 """
 import argparse
 import csv
