@@ -83,6 +83,17 @@ class AgainstTheReference(Case):
 class BlocksThatLeave(Case):
     """A ground that hardly brakes sends blocks off the DEM that were measured at rest on it."""
 
+    def test_a_preset_is_the_model_that_names_it_alone(self):
+        """For zones, too: elm has three."""
+        file = self.write("preset.toml", '[ground]\ndefault = "lower-talus-3d"\n')
+        asked = ["score", ELM + "/campaign.toml", "--trials", "20", "--json"]
+        of_file = self.run_well(*asked, "--parameters", file).stdout
+        self.assertEqual(self.run_well(*asked, "--preset", "lower-talus-3d").stdout, of_file)
+        self.assertNotEqual(self.run_well(*asked, "--preset", "upper-talus-3d").stdout, of_file)
+        for models in ([], ["--preset", "lower-talus-3d", "--parameters", file]):
+            self.fails(2, "give the model, either --parameters fitted.toml, or --preset upper-talus-3d", arguments=[*asked, *models])
+        self.fails(2, "lower-talus", "did you mean", arguments=[*asked, "--preset", "lower-talus-2"])
+
     SMOOTH = '[ground]\ndefault = "upper-talus-3d"\n[ground.zones.default]\nEn50 = 60\nEt50 = 200\ntheta_scale = 0.3\n'
 
     def test_they_are_counted(self):

@@ -9,13 +9,14 @@
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/reports/score_report.hpp"
 #include "talus/io/results/write_block_runs.hpp"
+#include "talus/simulate/scenario/presets.hpp"
 
 namespace {
 
 constexpr std::uint32_t kFewestTrials = 100;  // for each block of a score that is reported
 
 struct ScoreOptions {
-  std::string campaign, parameters, rows = "all", dump;
+  std::string campaign, parameters, preset, rows = "all", dump;
   std::optional<std::string> surface;
   std::uint32_t trials = 100;
   std::uint64_t seed = 1;
@@ -48,10 +49,21 @@ void refuse_nothing(const ScoreOptions& options, const talus::Campaign& campaign
                             (options.rows == "all" ? "" : ", or ask for --rows all"));
 }
 
+/// The model that is asked for: that of a file, or a preset in every zone.
+talus::Model model_of(const ScoreOptions& options, const talus::Campaign& campaign,
+                      std::vector<std::string>& warnings) {
+  if (options.parameters.empty() == options.preset.empty())
+    throw talus::InputError("score: give the model, either --parameters fitted.toml, or --preset " +
+                            std::string(talus::kDefaultPreset) +
+                            " (or another that talus presets lists) for a ground that nobody has fitted");
+  return options.preset.empty() ? talus::io::read_model(options.parameters, campaign, &warnings)
+                                : talus::model_of_preset(campaign, options.preset);
+}
+
 int score_model(const ScoreOptions& options) {
   talus::io::LoadedCampaign loaded = talus::io::read_campaign(options.campaign, options.surface);
   const talus::Campaign& campaign = loaded.campaign;
-  const talus::Model model = talus::io::read_model(options.parameters, campaign, &loaded.warnings);
+  const talus::Model model = model_of(options, campaign, loaded.warnings);
   if (options.trials < kFewestTrials)
     loaded.warnings.push_back(
         "--trials " + std::to_string(options.trials) + ": must be " + std::to_string(kFewestTrials) +
@@ -104,9 +116,12 @@ void add_score(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("score", "Say how far a model is from measured data, group by group");
   with(command->add_option("campaign", options->campaign, "measured data: campaign.toml")->required(),
        file_of({"toml"}));
-  with(command->add_option("--parameters", options->parameters, "the model: fitted.toml, as talus calibrate writes it")
-           ->required(),
+  with(command->add_option("--parameters", options->parameters, "the model: fitted.toml, as talus calibrate writes it"),
        file_of({"toml"}));
+  with(command->add_option("--preset", options->preset,
+                           "in place of a model: a parameter set in every zone, without effects; talus presets lists "
+                           "them"),
+       preset_choice(""));
   add_surface(*command, options->surface);
   with(command->add_option("--trials", options->trials, "simulated trajectories per block (100)")
            ->check(CLI::Range(10, 100000)),
@@ -122,7 +137,8 @@ void add_score(CLI::App& app, Action& action) {
   add_threads(*command, options->threads);
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors and the result");
   command->footer(
-      "Example:\n  talus score campaign.toml --parameters result/fitted.toml\n\n"
+      "Example:\n  talus score campaign.toml --parameters result/fitted.toml\n"
+      "  talus score campaign.toml --preset upper-talus-3d\n\n"
       "0: the model gives the measured value exactly; about 0.56: it knows only the spread of the measurements.");
   command->callback([&action, options] { action = [options] { return score_model(*options); }; });
 }
