@@ -103,11 +103,16 @@ def norm_of(v, classes, log):
     top = float(good.max()) if good.size else 1.0
     if classes:
         bounds = classes + [top if top > classes[-1] else 2 * classes[-1] if classes[-1] > 0 else 1.0]
-        return BoundaryNorm(bounds, 256), bounds
+        return BoundaryNorm(bounds, 256), classes if bounds[-1] > 100 * classes[-1] > 0 else bounds
     low = float(good.min()) if good.size else 0.0
     if log:
         return LogNorm(max(low, top * 1e-5), top if top > low else low * 10), None
     return Normalize(min(low, 0.0), top if top > low else low + 1), None
+
+
+def in_words(value):
+    """Three digits, thousands apart."""
+    return f"{value:.3g}" if abs(value) < 1000 else f"{value:,.0f}".replace(",", "\N{NO-BREAK SPACE}")
 
 
 def nice(length):
@@ -176,13 +181,16 @@ def main():
         image = ax.imshow(v, cmap=o.colours, norm=norm, extent=where, interpolation="nearest", alpha=0.72, zorder=2)
         bar = fig.colorbar(image, ax=ax, fraction=0.035, pad=0.02, ticks=ticks, extendfrac=0)
         if ticks:
-            bar.ax.set_yticklabels(o.names[1:] if o.names else [f"{t:.3g}" for t in ticks])
+            bar.ax.set_yticklabels(o.names[1:] if o.names else [in_words(t) for t in ticks])
         bar.set_label(o.unit, fontsize=9)
         bar.ax.tick_params(labelsize=8)
     for path, ink in zip(o.vectors, INKS * len(o.vectors)):
         draw_vectors(ax, path, ds.GetSpatialRef(), ink)
     if o.vectors:
-        ax.legend(loc="upper left", fontsize=8, framealpha=0.85, borderpad=0.5).set_zorder(7)
+        legend = ax.legend(loc="upper left", fontsize=8, framealpha=0.85, borderpad=0.5)
+        legend.set_zorder(7)
+        for line in legend.get_lines():
+            line.set(alpha=1.0, linewidth=1.1)  # also of many lines, which are drawn fine
     ax.set(xlim=view[:2], ylim=view[2:], xticks=[], yticks=[])
     ax.set_aspect("equal")
     ax.set_title(o.title, fontsize=11, loc="left")

@@ -54,7 +54,7 @@ def dialog(application, path):
     from processing.gui.AlgorithmDialog import AlgorithmDialog
     shown = AlgorithmDialog(QgsApplication.processingRegistry().createAlgorithmById("talus:run"))
     inputs = QgsProject.instance().mapLayersByName
-    values = {"DEM": inputs("dem")[0], "SOURCES": inputs("cliffs")[0], "FREQUENCY_FIELD": "frequency", "DIAMETER": 1.2}
+    values = {"DEM": inputs("dem")[0], "SOURCES": inputs("cliffs")[0], "FREQUENCY_FIELD": "frequency"}
     shown.mainWidget().setParameters(values)
     shown.resize(900, 860)
     shown.show()
