@@ -154,12 +154,29 @@ class Score(Deposits):
         self.assertIn("1 of 51 blocks lie outside the mapped polygons and are left out: far", done.stderr)
         self.assertIn("(50 blocks)", done.stdout)
         self.assertIn("energy distance of the patterns", done.stdout)
-        self.assertIn("come to rest where these were mapped", done.stdout)
+        self.assertRegex(done.stdout, r"\d+\.\d % of the simulated blocks come to rest inside the mapped polygons; the others do not count")
+
+    def test_the_share_in_the_strips_is_said_beside_that_in_the_polygons(self):
+        """Strips hold the same polygons: without them the blocks of both kinds of rows come to rest there as often."""
+        whole = self.score("-q")["fit"]["deposits"]
+        self.assertEqual(whole["mapped"], whole["inside"])
+        self.campaign("strips = 5\nholdout = [2, 4]\n")
+        rows = self.score("-q")
+        blocks = [rows[kind]["blocks"] for kind in ("fit", "holdout")]
+        mapped = [rows[kind]["deposits"]["mapped"] for kind in ("fit", "holdout")]
+        self.assertAlmostEqual(np.dot(blocks, mapped) / sum(blocks), whole["mapped"], 5)
+        text = self.run_well("score", self.path("campaign.toml"), "--parameters", self.model).stdout
+        for kind, words in (("fit", "fitted"), ("holdout", "held out")):
+            share = rows[kind]["deposits"]
+            self.assertLess(share["inside"], 0.9 * share["mapped"])
+            self.assertIn(f"{100 * share['mapped']:.1f} % of the simulated blocks come to rest inside the mapped polygons, "
+                          f"{100 * share['inside'] / share['mapped']:.1f} % of these in the strips that are {words}; the others do not count", text)
 
     def test_no_polygons_are_said(self):
         self.campaign(table='[deposits]\nsources = "sources.gpkg"\n')  # the table is deposits.csv where none is named
         done = self.run_well("score", self.path("campaign.toml"), "--parameters", self.model)
         self.assertIn("the whole DEM counts as mapped", done.stderr)
+        self.assertIn("% of the simulated blocks come to rest on the DEM, all of which counts as mapped; the others do not count", done.stdout)
 
 
 class Faults(Deposits):
@@ -176,6 +193,19 @@ class Faults(Deposits):
         self.campaign()
         self.deposits([row + ["5"] for row in self.rows], ("id", "x", "y", "diameter_m", "mass_kg"))
         self.refuses("diameter_m", "leave the other empty")
+        self.deposits(self.rows[:20] + [[f"far{i}", str(WEST + 20), str(NORTH - 200), "0.5"] for i in range(21)])
+        self.refuses("21 of 41 blocks lie outside the mapped polygons, more than half", "draw the polygons round")
+
+    def test_a_layer_for_the_table(self):
+        self.campaign(table=TABLE.replace('"deposits.csv"', '"mapped.gpkg"'))
+        self.refuses("mapped.gpkg: is a layer of vectors", "CSV only", "AS_XY")
+        # As QGIS writes it: the places in X and Y, and the number of the feature.
+        self.campaign()
+        self.deposits([[x, y, str(i), *more] for i, (name, x, y, size) in enumerate(self.rows) for more in [(name, size)]],
+                      ("X", "Y", "fid", "id", "diameter_m"))
+        done = self.run_well("score", self.path("campaign.toml"), "--parameters", self.model)
+        self.assertIn("deposits.csv: column fid: not read", done.stderr)
+        self.assertIn("(50 blocks)", done.stdout)
 
     def test_campaign(self):
         for table, top, words in (
@@ -241,7 +271,7 @@ class Calibrate(Deposits):
         self.assertTrue(low <= 0.4 <= high, (low, high))  # of forest-road-3d
         self.assertIn("deposits", result["error"]["holdout"])
         self.assertIn("distance from the nearest source", [d["observable"] for d in result["distributions"]])
-        self.assertIn("come to rest where these were mapped", self.read_text("fit/report.md"))
+        self.assertIn("come to rest inside the mapped polygons", self.read_text("fit/report.md"))
 
 
 if __name__ == "__main__":

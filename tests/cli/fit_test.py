@@ -151,6 +151,20 @@ class OwnCampaign(Case):
         self.assertTrue(0 <= kappa["ci95"][0] <= kappa["ci95"][1] <= 3, kappa)
         self.assertEqual(record["start_model"], start)
 
+    def test_a_second_stop(self):  # was left out with a warning
+        rows = self.read_text("stops.csv").splitlines()
+        self.write("stops.csv", "\n".join(rows + [rows[2]]) + "\n")
+        self.fails(2, f"stops.csv:{len(rows) + 1}: id = '{rows[2].split(',')[0]}': is there already in line 3",
+                   arguments=["score", self.campaign, "--parameters", self.path("truth.toml")])
+
+    def test_an_error_that_hides_the_model_is_said(self):  # in cm; any model is then as good as the true one
+        arguments = ["score", self.campaign, "--parameters", self.path("truth.toml"), "--trials", "20"]
+        self.assertNotIn("is more than a quarter of the spread", self.run_well(*arguments).stderr)
+        self.write("campaign.toml", self.read_text("campaign.toml").replace("position_m = 0.3", "position_m = 30"))
+        done = self.run_well(*arguments)
+        self.assertIn("campaign.toml: [measurement_error] position_m = 30: is more than a quarter of the spread", done.stderr)
+        self.assertIn("position_m = 30", " ".join(json.loads(self.run_well(*arguments, "--json", "-q").stdout)["warnings"]))
+
     def test_tables_of_a_header_alone_are_said(self):  # they passed for tables of blocks that nobody measured
         self.write("s.csv", "id,x,y\n"), self.write("p.csv", "id,screen,speed_ms\n"), self.write("samples.csv", "id,x,y,speed_ms\n")
         for file, other, names in (("stops.csv", "s.csv", ("s.csv", "samples.csv")), ("passages.csv", "p.csv", ("p.csv", "samples.csv"))):

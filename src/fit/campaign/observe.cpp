@@ -85,8 +85,10 @@ class Instrument {
   /// Leaves out a stop where a block like this would not have been mapped.
   void keep_mapped(const MeasuredBlock& block, std::uint32_t trial, BlockRuns& runs) const {
     const MappedDeposits& deposits = *campaign_.deposits;
-    if (region_at(deposits, {runs.x[trial], runs.y[trial]}) != region_at(deposits, *block.stop))
-      runs.x[trial] = runs.y[trial] = kNotGiven;
+    const std::uint8_t region = region_at(deposits, {runs.x[trial], runs.y[trial]});
+    if (region == region_at(deposits, *block.stop)) return;
+    if (region != 0) std::atomic_ref(runs.elsewhere).fetch_add(1, std::memory_order_relaxed);
+    runs.x[trial] = runs.y[trial] = kNotGiven;
   }
 
   void passages(const Errors& errors, std::uint32_t trial, BlockRuns& runs) const {

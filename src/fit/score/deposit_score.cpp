@@ -208,9 +208,16 @@ Score deposit_score(const Campaign& campaign, std::span<const BlockRuns> runs, c
 DepositCheck check_deposits(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
   DepositCheck check;
   Mean inside;
-  for (std::size_t b = 0; b < runs.size(); ++b)
+  double elsewhere = 0.0;
+  for (std::size_t b = 0; b < runs.size(); ++b) {
+    if (ask[b]) elsewhere += runs[b].elsewhere;
     for (std::uint32_t t = 0; ask[b] && t < runs[b].trials; ++t) inside.add(std::isnan(runs[b].x[t]) ? 0.0 : 1.0);
+  }
   check.inside = inside.value();
+  check.mapped = (inside.sum + elsewhere) / inside.count;
+  const auto& regions = campaign.deposits->region.values;
+  check.whole_dem = std::ranges::count(regions, 0) == 0;
+  check.strips = campaign.deposits->anywhere.size() > 2;
   std::vector<ClassOfBlocks> classes;  // those of `patterns`
   for (std::size_t number = 0; number <= campaign.deposits->limits.size(); ++number) {
     ClassOfBlocks blocks = blocks_of(campaign, runs, ask, number);

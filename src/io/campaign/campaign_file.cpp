@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "campaign_checks.hpp"
 #include "campaign_tables.hpp"
 #include "deposit_tables.hpp"
 #include "io/files/checksum.hpp"
@@ -190,6 +191,7 @@ LoadedCampaign read_campaign(const std::string& path, const std::optional<std::s
     read_deposits(spec.deposits, terrain, campaign, out.warnings);
   else
     read_tables({spec.blocks.path, spec.stops.path, spec.passages.path, spec.samples.path}, campaign, out.warnings);
+  warn_of_errors(path, campaign, out.warnings);
   if (!spec.error_given)
     out.warnings.push_back(path +
                            ": has no [measurement_error]: all that was measured counts as exact; give the standard "

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 #include <unordered_map>
 
+#include "campaign_checks.hpp"
 #include "talus/base/error.hpp"
-#include "talus/base/sample.hpp"
 #include "talus/base/text.hpp"
 #include "talus/terrain/no_height.hpp"
 
@@ -36,22 +37,25 @@ class Tables {
     if (!files_.passages.empty()) read_passages();
     if (!files_.samples.empty()) read_samples();
     order();
+    warn_of_releases(files_.blocks, campaign_, warnings_);
+    warn_of_rises(files_.stops, campaign_, warnings_);
   }
 
  private:
   using Row = CsvTable::Row;
 
   void read_blocks() {
-    const CsvTable table(files_.blocks,
-                         {"id", "x", "y", "release_height_m", "release_radius_m", "vx", "vy", "vz", "mass_kg",
-                          "density_kgm3", "L1_m", "L2_m", "L3_m", "day", "group", "rock", "holdout"},
-                         {"id", "x", "y", "release_height_m", "mass_kg"});
+    const CsvTable table =
+        table_of_campaign(files_.blocks,
+                          {"id", "x", "y", "release_height_m", "release_radius_m", "vx", "vy", "vz", "mass_kg",
+                           "density_kgm3", "L1_m", "L2_m", "L3_m", "day", "group", "rock", "holdout"},
+                          {"id", "x", "y", "release_height_m", "mass_kg"}, warnings_);
+    std::unordered_map<std::string, int> lines;
     table.for_each_row([&](const Row& row) {
       MeasuredBlock block;
       block.id = table.name(row, "id");
       block.stream = stream_of_name(block.id);
-      const auto [earlier, fresh] = lines_.try_emplace(block.id, row.line);
-      if (!fresh) table.refuse(row, "id", "is there already in line " + std::to_string(earlier->second));
+      refuse_second(table, row, lines);
       indices_[block.id] = campaign_.blocks.size();
       const Eigen::Vector2d place = place_of(table, row);
       block.x = place.x();
@@ -119,16 +123,13 @@ class Tables {
   }
 
   void read_stops() {
-    const CsvTable table(files_.stops, {"id", "x", "y", "mass_kg"}, {"id", "x", "y"});
+    const CsvTable table = table_of_campaign(files_.stops, {"id", "x", "y", "mass_kg"}, {"id", "x", "y"}, warnings_);
     warn_if_empty(files_.stops, table);
+    std::unordered_map<std::string, int> lines;
     table.for_each_row([&](const Row& row) {
       MeasuredBlock& block = block_of_row(table, row);
+      refuse_second(table, row, lines);
       const bool placed = !table.text(row, "x").empty() || !table.text(row, "y").empty();
-      if ((placed && block.stop) || (!table.text(row, "mass_kg").empty() && block.stop_mass)) {
-        warnings_.push_back(files_.stops + ":" + std::to_string(row.line) + ": block '" + block.id +
-                            "' has a stop already: the first one counts");
-        return;
-      }
       if (placed) block.stop = place_on_map(table, row);
       if (const auto mass = stop_mass_of(table, row, block)) block.stop_mass = mass;
     });
@@ -146,8 +147,9 @@ class Tables {
   }
 
   void read_passages() {
-    const CsvTable table(files_.passages, {"id", "screen", "speed_ms", "jump_height_m", "angular_velocity_rads"},
-                         {"id", "screen"});
+    const CsvTable table =
+        table_of_campaign(files_.passages, {"id", "screen", "speed_ms", "jump_height_m", "angular_velocity_rads"},
+                          {"id", "screen"}, warnings_);
     std::size_t doubled = 0;
     std::string first;
     std::vector<bool> off_map;
@@ -192,7 +194,8 @@ class Tables {
   }
 
   void read_samples() {
-    const CsvTable table(files_.samples, {"id", "x", "y", "z", "speed_ms", "angular_velocity_rads"}, {"id", "x", "y"});
+    const CsvTable table = table_of_campaign(files_.samples, {"id", "x", "y", "z", "speed_ms", "angular_velocity_rads"},
+                                             {"id", "x", "y"}, warnings_);
     std::vector<std::string> again;  // lines of samples that are there already
     warn_if_empty(files_.samples, table);
     table.for_each_row([&](const Row& row) {
@@ -234,10 +237,26 @@ class Tables {
   Campaign& campaign_;
   std::vector<std::string>& warnings_;
   std::unordered_map<std::string, std::size_t> indices_;
-  std::unordered_map<std::string, int> lines_;  // of blocks.csv
 };
 
 }  // namespace
+
+CsvTable table_of_campaign(const std::string& path, std::vector<std::string> known,
+                           const std::vector<std::string>& required, std::vector<std::string>& warnings) {
+  const std::array<std::string, 5> remarks{"remark", "remarks", "note", "notes", "fid"};  // fid: of a layer in QGIS
+  known.insert(known.end(), remarks.begin(), remarks.end());
+  CsvTable table(path, known, required);
+  std::vector<std::string> unread;
+  std::ranges::copy_if(remarks, std::back_inserter(unread), [&](const std::string& name) { return table.has(name); });
+  if (!unread.empty())
+    warnings.push_back(path + ": " + (unread.size() > 1 ? "columns " : "column ") + joined(unread) + ": not read");
+  return table;
+}
+
+void refuse_second(const CsvTable& table, const CsvTable::Row& row, std::unordered_map<std::string, int>& lines) {
+  const auto [earlier, fresh] = lines.try_emplace(table.name(row, "id"), row.line);
+  if (!fresh) table.refuse(row, "id", "is there already in line " + std::to_string(earlier->second));
+}
 
 Vec3 axes_of(const CsvTable& table, const CsvTable::Row& row, double diameter) {
   constexpr std::array<const char*, 3> kColumns{"L1_m", "L2_m", "L3_m"};
@@ -252,33 +271,6 @@ Vec3 axes_of(const CsvTable& table, const CsvTable::Row& row, double diameter) {
           row, kColumns[i],
           std::string("must not be above ") + kColumns[i - 1] + " = " + text_of(*axes[i - 1]) + " (L1 >= L2 >= L3)");
   return {*axes[0], *axes[1], *axes[2]};
-}
-
-void warn_of_median(const std::string& path, std::span<const MeasuredBlock> blocks,
-                    std::vector<std::string>& warnings) {
-  constexpr double kSmall = 0.15, kLarge = 10.0;  // diameter of a sphere of the same volume [m]
-  std::vector<double> diameters;
-  for (const MeasuredBlock& b : blocks) diameters.push_back(equivalent_diameter(b.mass, b.density));
-  const double median = median_of(std::move(diameters));
-  if (median >= kSmall && median <= kLarge) return;
-  warnings.push_back(path + ": half of the blocks are " + (median < kSmall ? "smaller" : "larger") + " than " +
-                     with_digits(median, 2) + " m across: are masses in kg, lengths in m and densities in kg/m3?");
-}
-
-void warn_of_masses(const std::string& path, std::span<const MeasuredBlock> blocks,
-                    std::vector<std::string>& warnings) {
-  constexpr double kFactor = 3.0;  // a cuboid has 1.9 times the volume of the ellipsoid in it
-  const auto ellipsoid = [](const MeasuredBlock& b) { return b.density * kPi / 6.0 * b.axes.prod(); };
-  const auto differs = [&](const MeasuredBlock& b) {
-    return b.mass > kFactor * ellipsoid(b) || ellipsoid(b) > kFactor * b.mass;
-  };
-  const auto first = std::ranges::find_if(blocks, differs);
-  if (first == blocks.end()) return;
-  warnings.push_back(path + ": the mass of " + std::to_string(std::ranges::count_if(blocks, differs)) + " of " +
-                     std::to_string(blocks.size()) +
-                     " blocks is more than 3 times above or below that of an ellipsoid of their axes and density: " +
-                     "block '" + first->id + "' has " + with_digits(first->mass, 4) + " kg, its ellipsoid " +
-                     with_digits(ellipsoid(*first), 4) + " kg; are masses in kg, axes in m and densities in kg/m3?");
 }
 
 void read_tables(const CampaignFiles& files, Campaign& campaign, std::vector<std::string>& warnings) {

@@ -1,6 +1,6 @@
 #pragma once
-#include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "io/gdal/csv_table.hpp"
@@ -23,12 +23,16 @@ inline constexpr Bounds kMass{"mass_kg", "kg", "mass of the block", 0.0, 1e9, Bo
 inline constexpr Bounds kDensity{"density_kgm3", "kg/m3", "mass per volume of the rock", 500.0, 8000.0};
 inline constexpr Bounds kHoldout{"holdout", "1", "1: never used to fit", 0.0, 1.0, Bounds::Closed, true};
 
+/// A table of a campaign. Its columns of remarks are not read, which is said.
+CsvTable table_of_campaign(const std::string& path, std::vector<std::string> known,
+                           const std::vector<std::string>& required, std::vector<std::string>& warnings);
+
+/// Refuses a second row with the same id.
+///
+/// @param lines  by id, those of the rows so far
+void refuse_second(const CsvTable& table, const CsvTable::Row& row, std::unordered_map<std::string, int>& lines);
+
 /// The axes of a block in a row of a table: L1_m >= L2_m >= L3_m, or none of them and those of a sphere.
 Vec3 axes_of(const CsvTable& table, const CsvTable::Row& row, double diameter);
-
-/// Warns once if masses contradict axes and density: a mass in tonnes, axes in cm. Spheres of their mass never do.
-void warn_of_masses(const std::string& path, std::span<const MeasuredBlock> blocks, std::vector<std::string>& warnings);
-/// Warns if the median block is larger or smaller than those that are measured in the field.
-void warn_of_median(const std::string& path, std::span<const MeasuredBlock> blocks, std::vector<std::string>& warnings);
 
 }  // namespace talus::io

@@ -5,6 +5,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "campaign_checks.hpp"
 #include "campaign_tables.hpp"
 #include "io/gdal/csv_table.hpp"
 #include "io/gdal/idle_features.hpp"
@@ -19,6 +20,7 @@ namespace {
 
 constexpr Bounds kDiameter{"diameter_m", "m", "of the sphere of the block's volume", 0.0, 50.0, Bounds::AboveMin};
 constexpr Bounds kDropHeight{"release_height", "m", "of the release above the terrain", 0.0, 500.0};
+constexpr double kManyOutside = 0.2, kMostOutside = 0.5;  // share of the blocks that lie outside the mapped polygons
 constexpr Bounds kStrips{"strips", "1", "number of strips across the slope", 2.0, 50.0, Bounds::Closed, true};
 constexpr Bounds kStrip{"holdout", "1", "number of a strip", 1.0, 50.0, Bounds::Closed, true};
 constexpr Bounds kClass{"classes", "m", "diameter between two classes", 0.0, 100.0, Bounds::AboveMin};
@@ -39,19 +41,24 @@ void check_strips(TableReader& table, const DepositSpec& spec) {
 /// The mapped blocks, in the order of their ids.
 class DepositTable {
  public:
-  DepositTable(const std::string& path, const Terrain& terrain)
-      : terrain_(terrain),
-        table_(path,
-               {"id", "x", "y", "mass_kg", "diameter_m", "density_kgm3", "L1_m", "L2_m", "L3_m", "group", "holdout"},
-               {"id", "x", "y"}) {}
+  DepositTable(const std::string& path, const Terrain& terrain, std::vector<std::string>& warnings)
+      : path_(path),
+        terrain_(terrain),
+        table_(table_of_campaign(
+            path, {"id", "x", "y", "mass_kg", "diameter_m", "density_kgm3", "L1_m", "L2_m", "L3_m", "group", "holdout"},
+            {"id", "x", "y"}, warnings)),
+        warnings_(warnings) {
+    if (!table_.has("mass_kg") && !table_.has("diameter_m"))
+      throw InputError(path + ":1: has no column mass_kg or diameter_m, must have one of them: the size of a block " +
+                       "decides how far it goes");
+  }
 
   std::vector<MeasuredBlock> read(const Surface& surface) {
     std::vector<MeasuredBlock> blocks;
     table_.for_each_row([&](const CsvTable::Row& row) {
       MeasuredBlock block;
       block.id = table_.name(row, "id");
-      const auto [earlier, fresh] = lines_.try_emplace(block.id, row.line);
-      if (!fresh) table_.refuse(row, "id", "is there already in line " + std::to_string(earlier->second));
+      refuse_second(table_, row, lines_);
       block.stream = stream_of_name(block.id);
       block.stop = place_of(row, surface);
       block.density = table_.number(row, "density_kgm3", kDensity).value_or(2700.0);
@@ -62,6 +69,7 @@ class DepositTable {
       blocks.push_back(std::move(block));
     });
     std::ranges::sort(blocks, {}, &MeasuredBlock::id);
+    warn_of_diameters(path_, std::move(ratios_), warnings_);
     return blocks;
   }
 
@@ -78,22 +86,43 @@ class DepositTable {
     return place;
   }
 
-  double mass_of(const CsvTable::Row& row, double density) const {
+  double mass_of(const CsvTable::Row& row, double density) {
     const auto mass = table_.number(row, "mass_kg", kMass);
     const auto diameter = table_.number(row, "diameter_m", kDiameter);
     if (!mass && !diameter)
       table_.refuse(row, table_.has("mass_kg") ? "mass_kg" : "diameter_m",
                     "must be given, as mass_kg or diameter_m: the size of a mapped block decides how far it goes; "
                     "estimate it, or leave the row out");
-    if (mass && diameter)
-      table_.refuse(row, "diameter_m", "stands beside a mass_kg, must be one of them: leave the other empty");
-    return mass ? *mass : density * kPi / 6.0 * *diameter * *diameter * *diameter;
+    const double sphere = diameter ? density * kPi / 6.0 * *diameter * *diameter * *diameter : 0.0;
+    if (!mass) return sphere;
+    if (!diameter) return *mass;
+    if (*mass > kMassFactor * sphere || sphere > kMassFactor * *mass)
+      table_.refuse(row, "diameter_m",
+                    "is that of a sphere of " + with_digits(sphere, 4) +
+                        " kg, must not be more than 3 times above or below mass_kg = " + text_of(*mass) +
+                        ": correct one of them, or leave the other empty");
+    ratios_.push_back(*mass / sphere);
+    return *mass;
   }
 
+  std::string path_;
   const Terrain& terrain_;
   CsvTable table_;
+  std::vector<std::string>& warnings_;
+  std::vector<double> ratios_;  // of masses to those of spheres of the diameters beside them
   std::unordered_map<std::string, int> lines_;
 };
+
+void warn_of_release_heights(const std::string& path, const SourceLayer& layer, const Terrain& terrain,
+                             std::vector<std::string>& warnings) {
+  double highest = 0.0;  // above the ground [m]
+  for (const SourceFeature& feature : layer.features) highest = std::max(highest, feature.release_height.high);
+  const double most = doubted_height(terrain.heights);
+  if (highest > most)
+    warnings.push_back(path + ": blocks are released up to " + with_digits(highest, 3) +
+                       " m above the ground, more than " + with_digits(most, 3) +
+                       " m: is release_height in m, and not the height of the cliff?");
+}
 
 /// The sources of a file, each cell once.
 std::vector<DepositSource> sources_of(const DepositSpec& spec, const Terrain& terrain,
@@ -108,6 +137,7 @@ std::vector<DepositSource> sources_of(const DepositSpec& spec, const Terrain& te
     if (setting.key.ends_with(".frequency") || setting.key.find(".diameter") != std::string::npos)
       warnings.push_back(spec.sources.path + ": the field " + setting.key.substr(setting.key.rfind('.') + 1) +
                          " counts nothing here: a source is as likely as its area, a block as large as it was mapped");
+  warn_of_release_heights(spec.sources.path, layer, terrain, warnings);
   const Grid& grid = terrain.heights.grid;
   const double plan = grid.cell_x * grid.cell_y;
   std::vector<bool> taken(grid.cells(), false);  // by a polygon: a point in the cell is a source of its own
@@ -161,8 +191,16 @@ void keep_mapped(const DepositSpec& spec, const MappedDeposits& deposits, std::v
     throw InputError(spec.mapped.where + ": none of the " + std::to_string(all) + " blocks of " + spec.table.path +
                      " lies inside its polygons, five must: are they those inside which blocks were mapped?");
   if (outside.empty()) return;
-  warnings.push_back(spec.table.path + ": " + std::to_string(outside.size()) + " of " + std::to_string(all) +
-                     " blocks lie outside the mapped polygons and are left out: " + listed(outside));
+  const double share = static_cast<double>(outside.size()) / static_cast<double>(all);
+  const std::string said = spec.table.path + ": " + std::to_string(outside.size()) + " of " + std::to_string(all) +
+                           " blocks lie outside the mapped polygons";
+  const std::string way_out =
+      "draw the polygons round all ground where every block was mapped, in the right coordinate "
+      "system, or delete the rows of blocks from elsewhere";
+  if (share > kMostOutside) throw InputError(said + ", more than half: " + listed(outside) + "; " + way_out);
+  warnings.push_back(
+      said + " and are left out: " + listed(outside) +
+      (share < kManyOutside ? "" : "; these are so many that the rest may be no picture of the map: " + way_out));
 }
 
 /// Says which blocks no source can have released.
@@ -246,7 +284,7 @@ DepositSpec read_deposit_spec(TableReader table, const std::filesystem::path& ba
 
 void read_deposits(const DepositSpec& spec, const Terrain& terrain, Campaign& campaign,
                    std::vector<std::string>& warnings) {
-  campaign.blocks = DepositTable(spec.table.path, terrain).read(campaign.surface);
+  campaign.blocks = DepositTable(spec.table.path, terrain, warnings).read(campaign.surface);
   if (campaign.blocks.empty())
     throw InputError(spec.table.path + ": has no blocks, must have one row for each that was mapped");
   warn_of_masses(spec.table.path, campaign.blocks, warnings);

@@ -14,9 +14,19 @@
 namespace talus::io {
 namespace {
 
+/// Throws InputError if a file of vectors stands where a table must.
+void refuse_layer(const std::string& path, std::string_view text) {
+  constexpr std::string_view kGeoPackage = "SQLite format 3", kShapefile("\0\0\x27\x0A", 4);
+  if (text.starts_with(kGeoPackage) || text.starts_with(kShapefile) || text.starts_with('{'))
+    throw InputError(path +
+                     ": is a layer of vectors, must be a table as text, CSV only: in QGIS, Export > Save Features As > "
+                     "CSV with the geometry AS_XY, which gives the columns X and Y");
+}
+
 std::string content_of(const std::string& path) {
   std::string text = read_file(path, path, "a table (CSV)", kMostTable);
   refuse_utf16(path, text);
+  refuse_layer(path, text);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
   return text;
 }
@@ -148,6 +158,9 @@ void CsvTable::read_header(std::vector<std::string> columns, const std::vector<s
   if (other != columns_.end())
     throw InputError(path_ + ":1: has a column '" + *other +
                      "': cells must all be separated by commas, all by semicolons or all by tabs: save it as CSV");
+  for (std::string& column : columns_)  // ID, x and l1_m are id, x and L1_m
+    for (const std::string& name : known)
+      if (lowercase(column) == lowercase(name)) column = name;
   std::vector<std::string> unknown;
   std::ranges::copy_if(columns_, std::back_inserter(unknown), [&](const std::string& column) {
     return !known.empty() && std::ranges::find(known, column) == known.end();
@@ -158,7 +171,7 @@ void CsvTable::read_header(std::vector<std::string> columns, const std::vector<s
                      known_names(unknown.front(), known));
   for (auto column = columns_.begin(); column != columns_.end(); ++column)
     if (std::find(columns_.begin(), column, *column) != column)
-      throw InputError(path_ + ":1: column '" + *column + "' is there twice, must be there once");
+      throw InputError(path_ + ":1: column '" + *column + "' is there twice, in whatever case, must be there once");
   for (const std::string& column : required)
     if (!has(column)) throw InputError(path_ + ":1: has no column '" + column + "', must have " + joined(required));
 }

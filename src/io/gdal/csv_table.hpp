@@ -37,7 +37,8 @@ class CsvTable {
     std::vector<std::string> cells;  ///< as many as columns, without blanks around them
   };
 
-  /// @param known     columns that may be there; any other is refused. Empty: any
+  /// @param known     columns that may be there, in upper or lower case; any other is refused. Empty: any, as they
+  /// stand
   /// @param required  columns that must be there
   /// Throws InputError if it cannot be read, has no header, or has rows of another length.
   CsvTable(std::string path, const std::vector<std::string>& known, const std::vector<std::string>& required);

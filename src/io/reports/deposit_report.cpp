@@ -21,6 +21,18 @@ std::string sentence_of(const std::string& rows, const PatternDistance& pattern)
          std::to_string(pattern.blocks) + " blocks";
 }
 
+/// How many simulated blocks count: those in the mapped polygons, and of these in the strips of these rows.
+std::string share_sentence(const ScoredRows& s) {
+  const DepositCheck& check = *s.deposits;
+  const std::string inside =
+      with_decimals(100.0 * check.mapped, 1) + " % of the simulated blocks come to rest " +
+      (check.whole_dem ? "on the DEM, all of which counts as mapped" : "inside the mapped polygons");
+  if (!check.strips) return inside + "; the others do not count";
+  const double share = check.mapped > 0.0 ? check.inside / check.mapped : 0.0;
+  return inside + ", " + with_decimals(100.0 * share, 1) + " % of these in the strips that are " +
+         (s.rows == "holdout" ? "held out" : "fitted") + "; the others do not count";
+}
+
 }  // namespace
 
 std::vector<std::string> deposit_sentences(const ScoredRows& s) {
@@ -28,8 +40,7 @@ std::vector<std::string> deposit_sentences(const ScoredRows& s) {
   const std::string rows = rows_in_words(s.rows);
   std::vector<std::string> sentences;
   for (const PatternDistance& pattern : s.deposits->patterns) sentences.push_back(sentence_of(rows, pattern));
-  sentences.push_back(rows + " rows: " + with_decimals(100.0 * s.deposits->inside, 1) +
-                      " % of the simulated blocks come to rest where these were mapped; the others do not count");
+  sentences.push_back(rows + " rows: " + share_sentence(s));
   return sentences;
 }
 
@@ -43,7 +54,9 @@ Json deposits_json(const ScoredRows& s) {
                         {"share", json_of(pattern.share, six_decimals)},
                         {"p_value", json_of(pattern.p_value, six_decimals)},
                         {"p_corrected", json_of(pattern.corrected, six_decimals)}});
-  return {{"inside", json_of(s.deposits->inside, six_decimals)}, {"patterns", patterns}};
+  return {{"mapped", json_of(s.deposits->mapped, six_decimals)},
+          {"inside", json_of(s.deposits->inside, six_decimals)},
+          {"patterns", patterns}};
 }
 
 }  // namespace talus::io

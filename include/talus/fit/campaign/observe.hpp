@@ -55,6 +55,7 @@ struct BlockRuns {
   std::vector<End> end;                     ///< by trial
   std::array<std::uint32_t, kEnds> ends{};  ///< trials by End
   std::vector<std::uint32_t> zone_hits;     ///< trials with an impact in each zone
+  std::uint32_t elsewhere = 0;              ///< trials that come to rest in another mapped region than this block's
   std::uint32_t cut_short = 0;              ///< trials that ended at a limit, if `Effort` bounds them: in a search
 };
 

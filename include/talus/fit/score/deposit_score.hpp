@@ -33,7 +33,10 @@ struct PatternDistance {
 /// Checks of a model against mapped blocks, beside the score: the pattern of each class and the share that counts.
 struct DepositCheck {
   std::vector<PatternDistance> patterns;  ///< by class
-  double inside = kNotGiven;              ///< share of the simulated trajectories that end in the mapped region
+  double mapped = kNotGiven;              ///< share of the simulated trajectories that end in any mapped region
+  double inside = kNotGiven;              ///< share of them that end in that of their block, and count
+  bool whole_dem = false;                 ///< whether all of the DEM counts as mapped
+  bool strips = false;                    ///< whether some strips are held out
 };
 
 /// The fair energy distance of the patterns, class by class: with the blocks i != k of a class and their trials t
