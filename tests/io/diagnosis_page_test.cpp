@@ -133,7 +133,9 @@ TEST(DiagnosisPage, SaysWhetherTheModelPredicts) {
   EXPECT_NE(with_skill(-0.2, -0.3).find("<b>No: do not take it for a map.</b> On held-out rows: no skill"),
             std::string::npos);
   EXPECT_NE(with_skill(kNotGiven, kNotGiven).find("It cannot be said."), std::string::npos);
-  after.coverage.push_back({.observable = "runout", .rows = 24});
+  after.coverage.resize(1);
+  after.coverage[0].observable = "runout";
+  after.coverage[0].rows = 24;
   after.coverage[0].below[1] = {.count = 7, .expected = {8.0, 16.0}};
   EXPECT_NE(with_skill(0.2, 0.05).find("<b>71 % of 24 held-out blocks ran farther than the model's median (of a right "
                                        "model 33 to 67 %): the model may stop blocks too early (unsafe)</b>."),

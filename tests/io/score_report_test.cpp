@@ -133,7 +133,9 @@ TEST(ScoreWarnings, OfBlocksWithoutAPlaceOfRestThatStayInTheModel) {
 TEST(JudgementLines, SayToWhichSideTheMiddleRunOutErrs) {
   ScoredRows rows;
   rows.rows = "holdout";
-  rows.coverage.push_back({.observable = "runout", .rows = 20});
+  rows.coverage.resize(1);
+  rows.coverage[0].observable = "runout";
+  rows.coverage[0].rows = 20;
   ShareBelow& below = rows.coverage[0].below[1];
   below = {.count = 6, .expected = {6.0, 14.0}};
   EXPECT_EQ(judgement_lines(rows).find("median"), std::string::npos);
