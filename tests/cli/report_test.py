@@ -150,7 +150,7 @@ class Content(Report):
         for warning in warnings:
             self.assertIn(warning, page.text)
         self.assertIn(", ".join(f"{end} {count:,}".replace(",", "\u00a0") for end, count in record["ends"].items()), page.text)
-        self.assertLessEqual({"Impact probability", "Energy, P95", "Jump height, P95", "Deposits", "Released blocks",
+        self.assertLessEqual({"Impact probability", "Energy, P95 (translational energy)", "Jump height, P95", "Deposits", "Released blocks",
                               "Hazard class, translational energy", "Annual frequency",
                               "Return period, translational energy > 30 kJ"}, set(page.maps()))
         self.assertIn("relief", [image["id"] for image in page.all("image")])
@@ -162,7 +162,7 @@ class Content(Report):
         self.results()
         page = self.page()
         left, top, columns, rows = self.window(page)
-        files = {"Impact probability": ("impact_probability", 1), "Energy, P95": ("energy", 3), "Deposits": ("deposits", 1),
+        files = {"Impact probability": ("impact_probability", 1), "Energy, P95 (translational energy)": ("energy", 3), "Deposits": ("deposits", 1),
                  "Jump height, P95": ("jump_height", 3), "Hazard class, translational energy": ("hazard_class", 1),
                  "Return period, translational energy > 30 kJ": ("return_period_30", 1), "Annual frequency": ("annual_frequency", 1)}
         for title, (name, band) in files.items():
@@ -661,7 +661,7 @@ class Files(Report):
         for text in ("", "<qgis>", "<qgis><pipe><rasterrenderer band='9e9'/></pipe></qgis>", "x" * 2_000_000):
             self.write("out/energy.qml", text)
             page = self.page("--overwrite")
-            self.assertNotIn("Energy, P95", page.maps())
+            self.assertNotIn("Energy, P95 (translational energy)", page.maps())
             self.assertIn("energy.tif: has no style with classes", page.text)
 
 
@@ -736,7 +736,7 @@ class Browser(Report):
         state = json.loads(re.search('<pre id="state">(.*?)</pre>', dom, re.DOTALL).group(1).replace("&gt;", ">"))
         values = dict(state["values"])
         self.assertEqual(set(values), set(page.maps()))
-        self.assertEqual(float(values["Energy, P95"].removesuffix(" kJ")), float(f"{energy[row, column]:.2e}"))
+        self.assertEqual(float(values["Energy, P95 (translational energy)"].removesuffix(" kJ")), float(f"{energy[row, column]:.2e}"))
         self.assertEqual(float(values["Impact probability"].removesuffix(" %")), float(f"{100 * float(f'{share:.2e}'):.6g}"))
         here = int(band_of(self.path("out/hazard_class.tif"), 1, left + int(column), top + int(row), 1, 1)[0][0, 0])
         self.assertGreater(here, 0)
