@@ -119,11 +119,14 @@ class OfACampaign(Case):
         model = 'fitted_diameters = [0.4, 1]\n[model]\ndeformation_coefficient = 0.25\n[ground.zones.default]\nEn50 = 7\n'
         text = 'include = "m.toml"\ndem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = {}\n[model]\ndeformation_coefficient = {}\n'
         self.write("m.toml", model)
-        for diameter, c, others, changed in ((1, 0.25, False, False), (6, 0.25, True, False), (1, 0.15, False, True)):
+        for diameter, c, others, changed in ((1, 0.25, False, False), (6, 0.25, True, False), (1, 0.15, False, True),
+                                             ("[0.361, 1.099]", 0.25, False, False), (1.11, 0.25, True, False)):
             self.write("s.toml", text.format(diameter, c))
             said = self.run_well("check", self.path("s.toml")).stdout
             self.assertEqual("m.toml (0.4 to 1 m); larger blocks" in said, others, said)
             self.assertEqual("fitted with the deformation coefficient c = 0.25, and this run takes 0.15" in said, changed, said)
+        self.write("s.toml", text.format(0.359, 0.25))
+        self.assertIn("m.toml (0.4 to 1 m); smaller blocks", self.run_well("check", self.path("s.toml")).stdout)
         self.write("m.toml", "fitted_diameters = [1, 0.4]\n")
         self.fails(2, "fitted_diameters", "[smallest, largest]", arguments=["check", self.path("s.toml")])
 

@@ -14,6 +14,8 @@
 namespace talus::io {
 namespace {
 
+constexpr double kFitTolerance = 0.1;  // of the diameters to which a ground was fitted: they are measured no better
+
 /// Whether a number of a ground is that of its preset. A complete scenario, as a run writes it, gives every number
 /// beside the preset, so that there only the values tell. A model that was fitted (`include`) has its own.
 bool from_preset(const ZoneSpec& zone, std::string_view key) {
@@ -92,7 +94,7 @@ void warn_of_sizes(const ScenarioSpec& spec, const Scenario& scenario, std::vect
   const std::string file = std::filesystem::path(spec.include.path).filename().string();
   Preset fitted{.name = file, .ground = {}, .source = {}, .where = {}, .sizes = {}};
   if (const std::optional<Range>& sizes = spec.fitted_on.diameters; sizes && uses_fit(spec)) {
-    fitted.sizes = {sizes->low, sizes->high, {}, true, true};
+    fitted.sizes = {sizes->low, sizes->high, {}, true, true, kFitTolerance};
     presets.push_back(&fitted);
   }
   for (std::string& warning :
