@@ -293,8 +293,10 @@ Reduction judged_skill(const ScoredRows& s) {
   if (std::isnan(s.skill.share)) return {};
   Reduction skill = rival_of(s).skill;
   double& low = skill.interval.low;
-  const bool not_counted = s.rows == "fit" && !(s.fitted > 0.0);
-  low = not_counted ? std::min(low, 0.0) : low - skill_of_fit(s);
+  if (s.fitted > 0.0)
+    low -= skill_of_fit(s);
+  else if (s.rows == "fit")
+    low = std::min(low, 0.0);  // numbers were fitted, how many is not known
   return skill;
 }
 
