@@ -190,6 +190,15 @@ shape = [1, 1.5]
             for _, one in changes:
                 self.assertEqual(sum(one in warning for warning in warnings), one in (words, changes[0][1]), (flags, one, warnings))
 
+    def test_what_is_known_of_a_fit_is_no_part_of_the_plan(self):
+        """It changes no result: parts and checkpoints of earlier versions fit together with those of this one."""
+        plans = set()
+        for known in ("", "fitted_cell = 5\n", "fitted_skill = [0.2]\n"):
+            self.write("m.toml", known + "[ground.zones.default]\nEn50 = 7\n")
+            self.run_scenario("out", "--overwrite")
+            plans.add(self.record()["plan"])
+        self.assertEqual(len(plans), 1)
+
     def test_faults_of_what_a_run_leaves_of_a_fit(self):
         self.write("m.toml", self.FIT)
         self.run_scenario("out")
