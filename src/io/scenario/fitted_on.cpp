@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/reports/evidence.hpp"
 #include "surface_key.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -71,8 +70,10 @@ void read_fit(ScenarioSpec& spec, TableReader table, const std::filesystem::path
 }
 
 std::string skill_in_words(const Reduction& skill) {
-  if (std::isnan(skill.interval.low)) return with_decimals(100.0 * skill.share, 1) + " %";
-  return reduction_in_words(skill);
+  const auto tenths = [](double share) { return with_decimals(100.0 * share, 1); };
+  const Interval& interval = skill.interval;
+  return tenths(skill.share) + " %" +
+         (std::isnan(interval.low) ? "" : " (95 %: " + tenths(interval.low) + " to " + tenths(interval.high) + " %)");
 }
 
 std::string skill_list(const Reduction& skill) {
