@@ -1,6 +1,7 @@
 """Thresholds, frequencies, classes and objects that count the energy with rotation, as a user calls it."""
 import collections
 import os
+import re
 import unittest
 
 import numpy as np
@@ -167,6 +168,8 @@ class CountRotation(OneThread, KeptRuns, Case):
             for text in ("Energies and classes of objects count the rotation", "energy with rotation [kJ]", "Return period, energy with rotation &gt; 30 kJ",
                          "energy with rotation, return period", "classes and objects count the energy with rotation"):
                 self.assertEqual(text in page, words, text)
+            titles = re.findall(r'data-title="(Energy[^"]*P95[^"]*)"', page)  # of the whole paths, in the order of the page
+            self.assertEqual(titles, ["Energy, P95 (translational energy)", "Energy with rotation, P95"] if words else ["Energy, P95"])
             self.assertEqual("Hazard class, energy with rotation" in self.read_text(out + "/talus.qgs"), words)
             self.assertEqual("Objects: hazard curves, energy with rotation" in self.read_text(out + "/talus.qgs"), words)
 

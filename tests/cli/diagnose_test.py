@@ -2,6 +2,7 @@
 All campaigns with the default numbers of trials: docs/diagnosis-results.md."""
 import os
 import re
+import tomllib
 import unittest
 
 import luck_test
@@ -94,6 +95,11 @@ class Loop(Case):
         self.assertNotRegex(page, "https?:")  # self-contained
         # `score` reads the model that was found.
         self.run_well("score", campaign, "--parameters", f"{out}/with_effect.toml", "-q")
+        for name, model in (("fitted", 1), ("with_effect", 2)):  # over the better of two climatologies, of which this is one
+            with open(f"{out}/{name}.toml", "rb") as file:
+                skill, low, high = tomllib.load(file)["fitted_skill"]
+            over_one = 1 - found["evidence"][model]["holdout"]["error"] / climatology["holdout"]["error"]
+            self.assertTrue(low <= skill <= high and skill <= over_one + 1e-3, (name, skill, over_one))
         return found
 
 

@@ -191,6 +191,14 @@ class OwnCampaign(Case):
         with open(self.path(model), "rb") as file:
             return tomllib.load(file)["fitted_diameters"]
 
+    def assert_skill_is_that_of(self, climatology, model):
+        """The model says how much better it is than the better climatology, of the places or by release."""
+        better = min(climatology, climatology["ways_from_release"], key=lambda one: one["score"])
+        with open(self.path(model), "rb") as file:
+            skill = tomllib.load(file)["fitted_skill"]
+        for one, other in zip(skill, [better["skill"], *better["skill_ci95"]], strict=True):
+            self.assertAlmostEqual(one, other, delta=6e-5)
+
     def diameters_of_fitting_rows(self):
         """The smallest and the largest [m], to a millimetre outwards."""
         with open(self.path("blocks.csv"), encoding="utf-8") as file:
@@ -226,6 +234,7 @@ class OwnCampaign(Case):
         scored = self.run_well("score", self.campaign, "--parameters", self.path("fit/fitted.toml"), "--json")
         self.assertAlmostEqual(json.loads(scored.stdout)["fit"]["score"], error["fit"]["after"], delta=1e-6)  # the same trials
         self.assertLess(error["fit"]["after"], error["fit"]["before"])
+        self.assert_skill_is_that_of(json.loads(scored.stdout)["holdout"]["climatology"], "fit/fitted.toml")
         self.write("s.toml", 'include = "fit/fitted.toml"\ndem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n'
                    "[blocks]\ndiameter = 0.8\n")
         self.run_well("run", self.path("s.toml"), "--trajectories", "3", "-o", self.path("out"))

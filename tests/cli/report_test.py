@@ -150,7 +150,7 @@ class Content(Report):
         for warning in warnings:
             self.assertIn(warning, page.text)
         self.assertIn(", ".join(f"{end} {count:,}".replace(",", "\u00a0") for end, count in record["ends"].items()), page.text)
-        self.assertLessEqual({"Impact probability", "Energy, P95", "Jump height, P95", "Deposits", "Released blocks",
+        self.assertLessEqual({"Impact probability", "Energy, P95 (translational energy)", "Jump height, P95", "Deposits", "Released blocks",
                               "Hazard class, translational energy", "Annual frequency",
                               "Return period, translational energy > 30 kJ"}, set(page.maps()))
         self.assertIn("relief", [image["id"] for image in page.all("image")])
@@ -162,7 +162,7 @@ class Content(Report):
         self.results()
         page = self.page()
         left, top, columns, rows = self.window(page)
-        files = {"Impact probability": ("impact_probability", 1), "Energy, P95": ("energy", 3), "Deposits": ("deposits", 1),
+        files = {"Impact probability": ("impact_probability", 1), "Energy, P95 (translational energy)": ("energy", 3), "Deposits": ("deposits", 1),
                  "Jump height, P95": ("jump_height", 3), "Hazard class, translational energy": ("hazard_class", 1),
                  "Return period, translational energy > 30 kJ": ("return_period_30", 1), "Annual frequency": ("annual_frequency", 1)}
         for title, (name, band) in files.items():
@@ -298,6 +298,51 @@ class Content(Report):
         with open(self.path("fit/fitted.toml"), "a", encoding="utf-8") as file:
             file.write("# another\n")
         self.assertIn("has changed since the run", self.page("--overwrite").text)
+
+    def row_of(self, text, point):
+        """Mark and what follows of a row of the checklist."""
+        return re.search(rf"\u2610 (act|look|fine){point}([^\u2610]*)", text).groups()
+
+    def test_a_fit_without_skill_is_not_fine(self):
+        """With the model, and with the scenario that its run leaves; the worth of its numbers comes from the record beside it."""
+        os.mkdir(self.path("fit"))
+        scenario = self.read_text("s.toml")
+        cases = (([-0.1, -0.3, 0.1], True, "act", "no skill: -10.0 % (95 %: -30.0 to 10.0 %)", "do not use this fit"),
+                 ([0.1, -0.1, 0.3], True, "look", "skill 10.0 % (95 %: -10.0 to 30.0 %): it may have none", "may be no better"),
+                 ([0.1], True, "look", "skill 10.0 %: it may have none", "may be no better"),
+                 ([0.2, 0.1, 0.3], False, "look", "1 of 1 fitted numbers is not identifiable", "one of many"),
+                 ([0.2, 0.1, 0.3], True, "fine", "skill 20.0 % (95 %: 10.0 to 30.0 %)", "its slope"),
+                 (None, True, "look", "its skill is not known", "talus score"))
+        for i, (skill, known, mark, found, _) in enumerate(cases):
+            self.write("fit/fitted.toml", (f"fitted_skill = {skill}\n" if skill else "") + "fitted_cell = 5\n[ground.zones.default]\nEn50 = 13\n")
+            self.write("fit/calibration.json", json.dumps({
+                "campaign": "quarry", "parameters": [{"key": "ground.En50", "unit": "m3/s2", "value": 13.0, "ci95": [9.5, 17.5],
+                                                      "identifiable": known}],
+                "error": {"holdout": {"before": 0.811, "after": 0.634, "climatology": 0.597}}, "warnings": []}))
+            self.write("s.toml", 'include = "fit/fitted.toml"\n' + scenario)
+            out = f"out{i}"
+            self.run_scenario(out)
+            self.run_well("run", self.path(out + "/scenario.toml"), "-o", self.path(out + "b"), "-q")
+            for folder in (out, out + "b"):
+                text = self.page(out=folder).text
+                self.assertIn("0.597", text)
+                self.assertEqual(text.count(found), 1 if "identifiable" in found else 3 if mark == "act" else 2, (folder, found))
+                row = self.row_of(text, "Ground")
+                self.assertEqual(row[0], mark, row)
+                self.assertIn(found, row[1])
+                self.assertIn(cases[i][4], row[1])
+                self.assertEqual(self.row_of(text, "DEM of the fit and DEM of the run")[0], "fine")
+
+    def test_the_climatology_of_a_diagnosis(self):
+        os.mkdir(self.path("fit"))
+        self.write("fit/with_effect.toml", "[ground.zones.default]\nEn50 = 13\n")
+        self.write("fit/diagnosis.json", json.dumps({
+            "campaign": "quarry", "effect": "none", "error": {"holdout": {"rows": "out-of-fold", "before": 0.811, "after": 0.634}},
+            "evidence": [{"model": "climatology", "fit": {"error": 0.111}, "out-of-fold": {"error": 0.597}},
+                         {"model": "ground", "out-of-fold": {"error": 0.811}}]}))
+        self.write("s.toml", 'include = "fit/with_effect.toml"\n' + self.read_text("s.toml"))
+        self.results(hazard=False)
+        self.assertRegex(self.page().text, r"0\.811\s*0\.634\s*0\.597")
 
     def test_the_fit_of_the_ground_alone_is_not_the_effect_that_was_found(self):
         """`fitted.toml` of a diagnosis lacks what it found: the error of a run with it is the one before."""
@@ -661,7 +706,7 @@ class Files(Report):
         for text in ("", "<qgis>", "<qgis><pipe><rasterrenderer band='9e9'/></pipe></qgis>", "x" * 2_000_000):
             self.write("out/energy.qml", text)
             page = self.page("--overwrite")
-            self.assertNotIn("Energy, P95", page.maps())
+            self.assertNotIn("Energy, P95 (translational energy)", page.maps())
             self.assertIn("energy.tif: has no style with classes", page.text)
 
 
@@ -736,7 +781,7 @@ class Browser(Report):
         state = json.loads(re.search('<pre id="state">(.*?)</pre>', dom, re.DOTALL).group(1).replace("&gt;", ">"))
         values = dict(state["values"])
         self.assertEqual(set(values), set(page.maps()))
-        self.assertEqual(float(values["Energy, P95"].removesuffix(" kJ")), float(f"{energy[row, column]:.2e}"))
+        self.assertEqual(float(values["Energy, P95 (translational energy)"].removesuffix(" kJ")), float(f"{energy[row, column]:.2e}"))
         self.assertEqual(float(values["Impact probability"].removesuffix(" %")), float(f"{100 * float(f'{share:.2e}'):.6g}"))
         here = int(band_of(self.path("out/hazard_class.tif"), 1, left + int(column), top + int(row), 1, 1)[0][0, 0])
         self.assertGreater(here, 0)

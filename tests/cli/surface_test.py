@@ -1,10 +1,11 @@
 """The key and the flag `surface`, from the input to the record, and the warning of dammed cells."""
 import json
+import os
 import re
 import unittest
 
 import numpy as np
-from osgeo import ogr
+from osgeo import gdal, ogr
 
 from support import NORTH, WEST, Case, RunCase, box, heights, write_dem, write_features
 
@@ -119,13 +120,95 @@ class OfACampaign(Case):
         model = 'fitted_diameters = [0.4, 1]\n[model]\ndeformation_coefficient = 0.25\n[ground.zones.default]\nEn50 = 7\n'
         text = 'include = "m.toml"\ndem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = {}\n[model]\ndeformation_coefficient = {}\n'
         self.write("m.toml", model)
-        for diameter, c, others, changed in ((1, 0.25, False, False), (6, 0.25, True, False), (1, 0.15, False, True)):
+        for diameter, c, others, changed in ((1, 0.25, False, False), (6, 0.25, True, False), (1, 0.15, False, True),
+                                             ("[0.361, 1.099]", 0.25, False, False), (1.11, 0.25, True, False)):
             self.write("s.toml", text.format(diameter, c))
             said = self.run_well("check", self.path("s.toml")).stdout
             self.assertEqual("m.toml (0.4 to 1 m); larger blocks" in said, others, said)
             self.assertEqual("fitted with the deformation coefficient c = 0.25, and this run takes 0.15" in said, changed, said)
+        self.write("s.toml", text.format(0.359, 0.25))
+        self.assertIn("m.toml (0.4 to 1 m); smaller blocks", self.run_well("check", self.path("s.toml")).stdout)
         self.write("m.toml", "fitted_diameters = [1, 0.4]\n")
         self.fails(2, "fitted_diameters", "[smallest, largest]", arguments=["check", self.path("s.toml")])
+
+
+class WhatARunKnowsOfTheFit(RunCase):
+    def setUp(self):
+        super().setUp()
+        self.write("s.toml", 'include = "m.toml"\ndem = "dem.tif"\ntrajectories = 3\n[sources]\nfile = "sources.gpkg"\n'
+                             "[blocks]\ndiameter = 1\n")
+
+    def test_a_run_says_that_the_fit_of_its_ground_has_no_skill(self):
+        for skill, said in (("[-0.097, -0.216, 0.021]", "no skill: -9.7 % (95 %: -21.6 to 2.1 %)"), ("[0]", "no skill: 0.0 %: "),
+                            ("[0.05, -0.01, 0.11]", None), ("[0.05]", None)):
+            self.write("m.toml", f"fitted_skill = {skill}\n[ground.zones.default]\nEn50 = 7\n")
+            self.run_scenario("out", "--overwrite")
+            warnings = [w for w in self.record()["warnings"] if "has no skill" in w]
+            self.assertEqual(len(warnings), said is not None, warnings)
+            self.assertTrue(said is None or said in warnings[0], warnings)
+        for wrong in ("0.1", "[0.1, 0.2]", "[0.1, 0.2, 0.3]", '["no"]'):
+            self.write("m.toml", f"fitted_skill = {wrong}\n[ground.zones.default]\nEn50 = 7\n")
+            self.fails(2, "fitted_skill", arguments=["check", self.path("s.toml")])
+
+    FIT = """surface = "creased"
+fitted_cell = 5
+fitted_diameters = [0.4, 1]
+fitted_skill = [-0.1, -0.3, 0.1]
+[model]
+deformation_coefficient = 0.15
+[ground.zones.default]
+preset = "upper-talus-3d"
+theta_scale = 1
+psi_scale = 0.9
+En50 = 15
+Et50 = 50
+phi = 30
+shape = [1, 1.5]
+"""  # all numbers are those of the preset, which was fitted to other sizes
+
+    def test_the_scenario_that_a_run_leaves_says_what_the_fit_says(self):
+        """Warnings of the same run again, and of one with another c, other cells, blocks or surface."""
+        self.write("m.toml", self.FIT)
+        self.run_scenario("out")
+        self.run_well("run", self.path("out/scenario.toml"), "-o", self.path("again"), "-q")
+        for name in os.listdir(self.path("out")):
+            if name not in ("run.json", "talus.qgs"):
+                self.assertEqual(self.hashes("out")[name], self.hashes("again")[name], name)
+        self.assertEqual(self.record("out")["plan"], self.record("again")["plan"])
+        model = [entry for entry in self.record("out")["inputs"] if entry["role"] == "include"]
+        self.assertEqual([entry for entry in self.record("again")["inputs"] if entry["role"] == "include"], model)
+        gdal.Warp(self.path("coarse.tif"), self.path("dem.tif"), xRes=10, yRes=10)
+        os.remove(self.path("m.toml"))  # a run that is repeated does not read it
+        changes = (((), "no skill: -10.0 % (95 %: -30.0 to 10.0 %)"),
+                   (("--deformation-coefficient", "0.25"), "c = 0.15, and this run takes 0.25"),
+                   (("--dem", self.path("coarse.tif")), "was fitted on cells of 5 m, and this run is on cells of 10 m"),
+                   (("--surface", "bilinear"), "was fitted on a creased surface, and this run is on a bilinear one"),
+                   (("--diameter", "3"), "the ground was fitted to others: m.toml (0.4 to 1 m); larger blocks"))
+        for flags, words in changes:
+            self.run_well("run", self.path("again/scenario.toml"), *flags, "-o", self.path("other"), "-q", "--overwrite")
+            warnings = self.record("other")["warnings"]
+            for _, one in changes:
+                self.assertEqual(sum(one in warning for warning in warnings), one in (words, changes[0][1]), (flags, one, warnings))
+
+    def test_what_is_known_of_a_fit_is_no_part_of_the_plan(self):
+        """It changes no result: parts and checkpoints of earlier versions fit together with those of this one."""
+        plans = set()
+        for known in ("", "fitted_cell = 5\n", "fitted_skill = [0.2]\n"):
+            self.write("m.toml", known + "[ground.zones.default]\nEn50 = 7\n")
+            self.run_scenario("out", "--overwrite")
+            plans.add(self.record()["plan"])
+        self.assertEqual(len(plans), 1)
+
+    def test_faults_of_what_a_run_leaves_of_a_fit(self):
+        self.write("m.toml", self.FIT)
+        self.run_scenario("out")
+        text = self.read_text("out/scenario.toml")
+        for old, new, *words in (("fitted_cell = 5", "fitted_cell = -5", "fit.fitted_cell = -5"), ("file = ", "# file = ", "[fit]: names no file"), ("file = ", "file = 5 # ", "fit.file = 5"),
+                                 ('default = ["En50"', 'default = [1, "En50"', "fit.zones.default", "list of keys"),
+                                 ("dem = ", 'include = "../m.toml"\ndem = ', "[fit]", "must not come with include")):
+            head, tail = text.split("[fit]")
+            self.write("out/mine.toml", head.replace(old, new) + "[fit]" + tail if old == "dem = " else head + "[fit]" + tail.replace(old, new, 1))
+            self.fails(2, *words, arguments=["check", self.path("out/mine.toml")])
 
 
 if __name__ == "__main__":

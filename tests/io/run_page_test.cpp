@@ -214,7 +214,8 @@ TEST(Escaping, EveryFieldOfEverySection) {
   BarrierPart barrier{h,           h,  5.0,         3.0, {{h, h, h, 1.0}, {"h_i", "m", h, 2.0}, {"V", "m3", h, 1.0}},
                       {{h, h, h}}, {}, {{0, 9, 1}}, {h}};
   ObjectsPart objects{{h}, {{h, h, 0.1, 0.1, 0.2, 0.0, {h}, {{1.0, 0.1}, {2.0, 0.05}}}}, 0, h, {h}};
-  const std::optional<FitPart> fit = FitPart{h, h, "", {{h, h, 1.0, 0.5, 2.0, false}}, {{h, 1.0, 0.5}}, h, {h}};
+  const std::optional<FitPart> fit =
+      FitPart{h, h, "", {{h, h, 1.0, 0.5, 2.0, false}}, {{h, 1.0, 0.5, 0.6}}, h, {h}, {}};
   for (const Markup& html : {screens_html(screens), barriers_html({barrier}), objects_html(objects, false),
                              fit_html(fit), checks_html({{Check::Mark::Act, h, h, h}})})
     expect_tame(html.text());

@@ -236,8 +236,24 @@ TEST(SkillSentence, OfFittedRowsTakesWhatTheFitGains) {
                                       "any skill; it may have no skill"),
             std::string::npos)
       << skill_sentence(rows);
+  EXPECT_NEAR(judged_skill(rows).interval.low, 0.1 - 7.0 / 12.0, 1e-12);
+  EXPECT_DOUBLE_EQ(judged_skill(rows).share, 0.286);
   rows.skill.interval.low = 0.59;
   EXPECT_EQ(skill_sentence(rows).find("it may have no skill"), std::string::npos);
+  rows.fitted = kNotGiven;  // some numbers, not counted: nothing is sure
+  EXPECT_DOUBLE_EQ(judged_skill(rows).interval.low, 0.0);
+}
+
+/// The skill that the file of a model gives is that on rows that it has not seen, over the better climatology.
+TEST(SkillOfModel, IsThatOnUnseenRows) {
+  ScoredRows fitting, unseen;
+  fitting.rows = "fit", unseen.rows = "holdout";
+  fitting.skill = {0.3, {0.2, 0.4}};
+  EXPECT_DOUBLE_EQ(skill_of_model(fitting, unseen).share, 0.3);  // there are none, or they tell nothing
+  unseen.climatology = of_two_groups(0.8, 0.8), unseen.ways = of_two_groups(0.5, 0.5);
+  unseen.skill = {0.2, {0.1, 0.3}}, unseen.skill_over_ways = {-0.1, {-0.2, 0.0}};
+  EXPECT_DOUBLE_EQ(skill_of_model(fitting, unseen).share, -0.1);
+  EXPECT_DOUBLE_EQ(skill_of_model(fitting, unseen).interval.low, -0.2);
 }
 
 }  // namespace

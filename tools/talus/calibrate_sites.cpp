@@ -114,7 +114,8 @@ int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how
   opened.write_models(work.models(), "fitted.toml",
                       "Fitted by talus calibrate to the campaigns " + c.campaign +
                           ", shared: " + (share.empty() ? "nothing" : talus::joined(share)) +
-                          ".\nUncertainty, and what is not identifiable: report.md of the folder above.");
+                          ".\nUncertainty, and what is not identifiable: report.md of the folder above.",
+                      c.evidence, &talus::io::BeforeAfter::after);
   for (const talus::io::SiteEvidence& site : c.evidence)
     if (const std::string ranks = talus::io::ranks_picture(site.errors); !ranks.empty())
       talus::io::write_text(opened.folder.temporary() / site.site / "ranks.svg", ranks);

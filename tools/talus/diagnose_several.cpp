@@ -16,11 +16,13 @@ void write_results(const OpenedSites& opened, const talus::io::SitesRecord& reco
   talus::io::write_text(out / "diagnosis.json", talus::io::sites_json(record));
   talus::io::write_text(out / "report.html", talus::io::sites_page(record));
   const talus::SitesDiagnosis& d = record.diagnosis;
-  opened.write_models(d.base, "fitted.toml", "The ground alone, fitted by talus diagnose with several campaigns.");
+  opened.write_models(d.base, "fitted.toml", "The ground alone, fitted by talus diagnose with several campaigns.",
+                      record.evidence, &talus::io::BeforeAfter::before);
   opened.write_models(d.with_effects, "with_effect.toml",
                       d.rounds.size() > 1
                           ? "The ground of this site and what talus diagnose found missing at all sites."
-                          : "The ground alone: talus diagnose found nothing to add at all sites.");
+                          : "The ground alone: talus diagnose found nothing to add at all sites.",
+                      record.evidence, &talus::io::BeforeAfter::after);
 }
 
 bool holds_out(const talus::Site& site) {

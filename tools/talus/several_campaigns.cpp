@@ -107,12 +107,15 @@ OpenedSites::OpenedSites(const CampaignCommand& command, talus::io::FitRecord& r
     for (const std::string& warning : record.warnings) say("warning", warning);
 }
 
-void OpenedSites::write_models(std::span<const talus::Model> models, const char* name,
-                               const std::string& heading) const {
+void OpenedSites::write_models(std::span<const talus::Model> models, const char* name, const std::string& heading,
+                               std::span<const talus::io::SiteEvidence> evidence,
+                               talus::io::ScoredRows talus::io::BeforeAfter::*scored) const {
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const std::filesystem::path own = folder.temporary() / sites[i].name;
     std::filesystem::create_directories(own);
-    talus::io::write_text(own / name, talus::io::model_text(models[i], loaded[i], heading));
+    const std::vector<talus::io::BeforeAfter>& errors = evidence[i].errors;
+    const talus::Reduction skill = talus::io::skill_of_model(errors.front().*scored, errors.back().*scored);
+    talus::io::write_text(own / name, talus::io::model_text(models[i], loaded[i], heading, skill));
   }
 }
 

@@ -22,7 +22,12 @@ struct OpenedSites {
   OpenedSites(const CampaignCommand& command, talus::io::FitRecord& record);
 
   /// Writes OUT/SITE/NAME for the models of all sites.
-  void write_models(std::span<const talus::Model> models, const char* name, const std::string& heading) const;
+  ///
+  /// @param evidence  of the sites in their order
+  /// @param scored    which of the two models of the evidence these are
+  void write_models(std::span<const talus::Model> models, const char* name, const std::string& heading,
+                    std::span<const talus::io::SiteEvidence> evidence,
+                    talus::io::ScoredRows talus::io::BeforeAfter::*scored) const;
 };
 
 /// `warn_of_scores` of each site.

@@ -193,7 +193,8 @@ Model read_model(const std::string& path, const Campaign& campaign, std::vector<
   return model;
 }
 
-std::string model_text(const Model& model, const LoadedCampaign& loaded, const std::string& heading) {
+std::string model_text(const Model& model, const LoadedCampaign& loaded, const std::string& heading,
+                       const Reduction& skill) {
   std::string text;
   std::istringstream lines(heading);
   for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
@@ -202,6 +203,8 @@ std::string model_text(const Model& model, const LoadedCampaign& loaded, const s
   const Range sizes = fitted_diameters(loaded.campaign);
   text += "fitted_diameters = [" + text_of(std::floor(1e3 * sizes.low) / 1e3) + ", " +
           text_of(std::ceil(1e3 * sizes.high) / 1e3) + "]  # m\n";
+  if (std::isfinite(skill.share))
+    text += "fitted_skill = " + skill_list(skill) + "  # share by which the error is below the climatology's; 95 %\n";
   for (std::size_t i = 0; i < loaded.campaign.zone_names.size(); ++i) {
     text += "\n[ground.zones." + toml_key(loaded.campaign.zone_names[i]) + "]\n";
     text += "preset = " + toml_text(std::string(kDefaultPreset)) + "\n";

@@ -173,12 +173,26 @@ void check_numbers(const CheckedRun& checked, Checks& checks) {
                         (run.of_profile ? "." : ", or --until-error.")});
 }
 
+/// The fitted ground: is it better than the measurements alone, and are its numbers known?
+void check_fit(const FitPart& fit, Checks& checks) {
+  const std::string unknown = fit.not_identifiable();
+  std::string found = "fitted: " + fit.file + "; " + skill_of_fit_text(fit.skill);
+  if (!unknown.empty()) found += "; " + unknown;
+  std::string why = "A fit holds for its slope, its blocks and its kind of DEM.";
+  if (fit.skill.share <= 0.0)
+    why = "The measurements without any model tell as well or better where blocks go: do not use this fit.";
+  else if (!(fit.skill.interval.low > 0.0))
+    why += " It may be no better than the measurements without any model.";
+  else if (!unknown.empty())
+    why += " A number that is not identifiable is one of many that fit as well: vary it.";
+  const bool good = fit.skill.share > 0.0 && fit.skill.interval.low > 0.0 && unknown.empty() && fit.note.empty();
+  checks.push_back({fit.skill.share <= 0.0 ? Mark::Act : good ? Mark::Fine : Mark::Look, "Ground", found, why});
+}
+
 void check_ground(const CheckedRun& checked, Checks& checks) {
   const RunFacts& run = checked.run;
   const std::vector<std::string> presets = presets_of(run, !checked.fit);
-  if (checked.fit)
-    checks.push_back({checked.fit->note.empty() ? Mark::Fine : Mark::Look, "Ground", "fitted: " + checked.fit->file,
-                      "A fit holds for its slope, its blocks and its kind of DEM."});
+  if (checked.fit) check_fit(*checked.fit, checks);
   if (!presets.empty())
     checks.push_back(
         {Mark::Look, "Ground from presets", joined(presets),

@@ -1,10 +1,12 @@
 #include "report_fit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "evidence.hpp"
 #include "io/files/checksum.hpp"
+#include "io/scenario/fitted_on.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
@@ -16,13 +18,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The error of the climatology: beside those of a calibration, a model of its own in the evidence of a diagnosis.
+double climatology_of(const Json& json, const Json& error, const char* rows) {
+  if (error.contains("climatology")) return number_of(error, "climatology", kNotGiven);
+  for (const Json& model : json.value("evidence", Json::array()))
+    if (model.value("model", "") == "climatology")
+      return number_of(model.value(rows, Json::object()), "error", kNotGiven);
+  return kNotGiven;
+}
+
 void read_errors(const Json& json, FitPart& part) {
   const Json error = json.value("error", Json::object());
   for (const auto& [key, rows] : {std::pair("fit", "fitting rows"), {"holdout", "rows that were held out"}}) {
     const Json one = error.value(key, Json());
     if (!one.is_object() || !one.contains("before") || one.at("before").is_null()) continue;
-    part.errors.push_back({rows, number_of(one, "before"), number_of(one, "after")});
+    const std::string kind = one.value("rows", key);  // of a diagnosis the unseen rows may be those out of their folds
+    part.errors.push_back(
+        {rows, number_of(one, "before"), number_of(one, "after"), climatology_of(json, one, kind.c_str())});
   }
+}
+
+/// The skill that the file of the model gives, as the run has read it.
+Reduction skill_in(const RunFacts& run) {
+  for (const RecordedSetting* setting : run.settings_of("fit.fitted_skill")) {
+    const Json list = Json::parse(setting->value, nullptr, false);
+    if (!list.is_array() || !std::ranges::all_of(list, [](const Json& one) { return one.is_number(); })) continue;
+    if (list.size() == 1) return {list[0].get<double>(), {}};
+    if (list.size() == 3) return {list[0].get<double>(), {list[1].get<double>(), list[2].get<double>()}};
+  }
+  return {};
 }
 
 void read_calibration(const Json& json, FitPart& part) {
@@ -64,6 +88,7 @@ std::optional<FitPart> read_fit_part(const RunFacts& run) {
   if (model == nullptr) return std::nullopt;
   FitPart part;
   part.file = model->path;
+  part.skill = skill_in(run);
   try {
     if (sha256_of_file(model->path) != model->sha256) {
       part.note = "The file has changed since the run, or is no longer there: its fit is not shown.";
@@ -82,21 +107,46 @@ std::optional<FitPart> read_fit_part(const RunFacts& run) {
     }
     if (!found) part.note = "There is no record of a fit beside it (calibration.json, diagnosis.json).";
   } catch (const InputError& error) {
-    part = {part.file, {}, "Its record cannot be read: " + shortened(error.what(), 300), {}, {}, {}, {}};
+    part = {.file = part.file,
+            .campaign = {},
+            .note = "Its record cannot be read: " + shortened(error.what(), 300),
+            .parameters = {},
+            .errors = {},
+            .effect = {},
+            .warnings = {},
+            .skill = part.skill};
   }
   return part;
+}
+
+std::string FitPart::not_identifiable() const {
+  const auto unknown = std::ranges::count(parameters, false, &Number::identifiable);
+  if (unknown == 0) return {};
+  return std::to_string(unknown) + " of " + std::to_string(parameters.size()) +
+         (unknown == 1 ? " fitted numbers is" : " fitted numbers are") + " not identifiable";
+}
+
+std::string skill_of_fit_text(const Reduction& skill) {
+  if (std::isnan(skill.share))
+    return "its skill is not known, the file of the model does not give it (talus score does)";
+  if (!(skill.share > 0.0)) return "no skill: " + skill_in_words(skill);
+  return "skill " + skill_in_words(skill) + (skill.interval.low > 0.0 ? "" : ": it may have none");
 }
 
 Markup fit_html(const std::optional<FitPart>& part) {
   if (!part) return {};
   Markup html = "<h2>Fit of the ground</h2>\n<p>The scenario includes "_html + part->file +
                 (part->campaign.empty() ? std::string() : ", fitted to the campaign " + part->campaign) + ".</p>\n";
+  html += "<p>Against the climatology, the measurements of the other blocks without any model: <b>"_html +
+          skill_of_fit_text(part->skill) + "</b>.</p>\n";
   if (!part->note.empty()) return html + "<p class='look'>" + part->note + "</p>\n";
   if (!part->errors.empty()) {
-    html += "<table><tr><th>error (mean normalised score)</th><th>before</th><th>after</th></tr>\n";
+    html +=
+        "<table><tr><th>error (mean normalised score)</th><th>before</th><th>after</th>"
+        "<th>climatology</th></tr>\n";
     for (const FitPart::Error& error : part->errors)
       html += "<tr><td>"_html + error.rows + "</td><td class='n'>" + score_text(error.before) + "</td><td class='n'>" +
-              score_text(error.after) + "</td></tr>\n";
+              score_text(error.after) + "</td><td class='n'>" + score_text(error.climatology) + "</td></tr>\n";
     html += "</table>\n";
   }
   if (!part->effect.empty()) html += "<p>The diagnosis found: <b>"_html + part->effect + "</b>.</p>\n";

@@ -26,6 +26,7 @@ struct Shown {
 constexpr Shown kShown[] = {{"hazard_class", "Hazard class", true},
                             {"impact_probability", "Impact probability", true},
                             {"energy", "Energy", true},
+                            {"energy_total", "Energy with rotation", true},
                             {"jump_height", "Jump height", true},
                             {"velocity", "Speed", true},
                             {"deposits", "Deposits", true},
@@ -34,7 +35,6 @@ constexpr Shown kShown[] = {{"hazard_class", "Hazard class", true},
                             {"return_period_", "Return period", true},
                             {"intensity_T", "Energy", true},
                             {"reach_probability", "Reach probability", false},
-                            {"energy_total", "Energy with rotation", false},
                             {"passages", "Passages", false},
                             {"trapped", "Trapped", false},
                             {"exits", "Paths that leave the DEM", false}};
@@ -51,15 +51,16 @@ bool is_shown_as(const std::string& name, const Shown& shown) {
                                                         : name == begins;
 }
 
-/// @param with_rotation  thresholds and hazard count the energy with rotation
-std::string title_of(const std::string& name, const Shown& shown, const std::string& band, bool with_rotation) {
+std::string title_of(const std::string& name, const Shown& shown, const std::string& band, const RunFacts& run) {
   const std::string title = shown.title, rest = rest_of(name, shown);
-  const std::string of_energy = title + ", " + energy_words(with_rotation).name;
+  const std::string of_energy = title + ", " + energy_words(run.count_rotation).name;
   if (name.starts_with("return_period_")) return of_energy + " > " + rest + " kJ";
   if (name.starts_with("intensity_T")) return of_energy + " once in " + rest + " years";
   if (name == "hazard_class") return of_energy;
   const bool quantity = band == "mean" || band == "maximum" || (band.size() == 3 && band.starts_with('P'));
-  return quantity ? title + ", " + shortened(band, 20) : title;
+  const bool both = run.count_rotation || std::ranges::count(run.files, "energy_total.tif") > 0;
+  const std::string remark = name == "energy" && both ? energy_words(false).remark : "";
+  return (quantity ? title + ", " + shortened(band, 20) : title) + remark;
 }
 
 /// The rasters of a kind in the folder, by the number in their name.
@@ -145,9 +146,7 @@ void add_map(const fs::path& folder, const std::string& name, const Shown& shown
   }
   const MapRaster raster(file.string(), style->band);
   check_grid(file, raster, run.grid);
-  ReportMap map{
-      name, title_of(name, shown, raster.band_name(), run.count_rotation), shortened(raster.unit(), 20), *style, {},
-      {}};
+  ReportMap map{name, title_of(name, shown, raster.band_name(), run), shortened(raster.unit(), 20), *style, {}, {}};
   map.file = name + ".tif";
   map.in_print = shown.in_print;
   map.smallest = name.starts_with("return_period_");

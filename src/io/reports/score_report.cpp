@@ -293,6 +293,22 @@ std::string skill_sentence(const ScoredRows& s) {
          (rival.skill.interval.low > of_fit ? "" : "; it may have no skill");
 }
 
+Reduction judged_skill(const ScoredRows& s) {
+  if (std::isnan(s.skill.share)) return {};
+  Reduction skill = rival_of(s).skill;
+  double& low = skill.interval.low;
+  if (s.fitted > 0.0)
+    low -= skill_of_fit(s);
+  else if (s.rows == "fit")
+    low = std::min(low, 0.0);  // numbers were fitted, how many is not known
+  return skill;
+}
+
+Reduction skill_of_model(const ScoredRows& fitting, const ScoredRows& unseen) {
+  const Reduction skill = judged_skill(unseen);
+  return std::isnan(skill.share) ? judged_skill(fitting) : skill;
+}
+
 std::string tail_against_climatology(const ScoredRows& s) {
   const std::string errors =
       with_decimals(s.tail.total, 3) + " against the climatology's " + with_decimals(s.tail_climatology.total, 3);

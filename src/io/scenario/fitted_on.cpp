@@ -1,15 +1,86 @@
 #include "fitted_on.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "surface_key.hpp"
 #include "talus/base/text.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus::io {
 namespace {
 
 constexpr double kOtherCells = 1.5;  // ratio of two sizes of cells; from 0.5 to 1 m the run-out changed by 1 %
 
+constexpr Bounds kFittedCell{"fitted_cell", "m",    "side of the cells of the DEM on which a model was fitted",
+                             0.0,           1000.0, Bounds::AboveMin};
+constexpr Bounds kFittedDiameters{"fitted_diameters", "m", "of the blocks to which a model was fitted", 0.0, 1000.0,
+                                  Bounds::AboveMin};
+constexpr Bounds kFittedSkill{"fitted_skill", "1", "share by which the error is below that of the climatology", -1e9,
+                              1e9};
+
+/// [fit.zones]: the fitted keys of each ground.
+void read_numbers(FittedOn& fitted, TableReader zones) {
+  if (zones.value() == nullptr) return;
+  for (const auto& [name, value] : zones.value()->members) {
+    const auto is_text = [](const TomlValue& item) { return item.kind == TomlValue::Kind::Text; };
+    if (value.kind != TomlValue::Kind::List || !std::ranges::all_of(value.items, is_text)) {
+      zones.fault(name, value, "must be a list of keys, like [\"theta_scale\"]");
+      continue;
+    }
+    for (const TomlValue& item : value.items) fitted.numbers[name].push_back(item.text);
+  }
+}
+
 }  // namespace
+
+void read_fitted(TableReader& table, FittedOn& fitted) {
+  fitted.cell = table.number("fitted_cell", kFittedCell);
+  fitted.diameters = table.range("fitted_diameters", kFittedDiameters);
+  const auto skill = table.numbers("fitted_skill", kFittedSkill);
+  if (!skill) return;
+  const std::vector<double>& s = *skill;
+  if (s.size() == 1)
+    fitted.skill = {s[0], {}};
+  else if (s.size() == 3 && s[1] <= s[0] && s[0] <= s[2])
+    fitted.skill = {s[0], {s[1], s[2]}};
+  else
+    table.fault("fitted_skill", *table.find("fitted_skill"), "must be [value, low, high], or [value]");
+}
+
+void read_fit(ScenarioSpec& spec, TableReader table, const std::filesystem::path& base) {
+  if (table.value() == nullptr) return;
+  const std::string here = table.file() + ":" + std::to_string(table.value()->line) + ": [fit]";
+  if (!spec.include.path.empty())
+    table.faults().push_back(here + ": is of the model of an earlier run, must not come with include: leave out one");
+  FittedOn& fitted = spec.fitted_on;
+  auto file = table.named_file("file", base);
+  if (table.find("file") == nullptr)
+    table.faults().push_back(here + ": names no file, must have file = \"...\", the fitted model");
+  fitted.file = std::move(file).value_or(NamedFile{});
+  fitted.sha256 = table.text("sha256").value_or("");
+  fitted.surface = read_surface(table);
+  read_fitted(table, fitted);
+  const auto& fields = scenario_fields();
+  const auto c = std::ranges::find(fields, "model.deformation_coefficient", [](const auto& f) { return f.key; });
+  fitted.deformation_coefficient = table.number("deformation_coefficient", *c);
+  read_numbers(fitted, table.table("zones"));
+  table.finish();
+  spec.origins["fit"] = "scenario";
+}
+
+std::string skill_in_words(const Reduction& skill) {
+  const auto tenths = [](double share) { return with_decimals(100.0 * share, 1); };
+  const Interval& interval = skill.interval;
+  return tenths(skill.share) + " %" +
+         (std::isnan(interval.low) ? "" : " (95 %: " + tenths(interval.low) + " to " + tenths(interval.high) + " %)");
+}
+
+std::string skill_list(const Reduction& skill) {
+  const auto rounded = [](double share) { return std::round(1e4 * share) / 1e4; };
+  if (std::isnan(skill.interval.low)) return list_text({rounded(skill.share)});
+  return list_text({rounded(skill.share), rounded(skill.interval.low), rounded(skill.interval.high)});
+}
 
 void warn_of_other_terrain(const ScenarioSpec& spec, const Grid& grid, SurfaceKind kind, const std::string& where,
                            const std::string& used, const std::string& remedy, std::vector<std::string>& warnings) {
@@ -26,19 +97,36 @@ void warn_of_other_terrain(const ScenarioSpec& spec, const Grid& grid, SurfaceKi
                      "farther: take a DEM of like cells, or fit again");
 }
 
+bool is_of_fit(const ScenarioSpec& spec, const ZoneSpec& zone, const std::string& key) {
+  const auto own = zone.own.find(key);
+  if (own == zone.own.end()) return false;
+  if (own->second != "scenario") return true;  // of the included model
+  const auto keys = spec.fitted_on.numbers.find(zone.name);
+  return keys != spec.fitted_on.numbers.end() && std::ranges::count(keys->second, key) > 0;
+}
+
 bool uses_fit(const ScenarioSpec& spec) {
-  const auto of_fit = [](const ZoneSpec& zone) {
-    return std::ranges::any_of(zone.own, [](const auto& number) { return number.second != "scenario"; });
+  const auto of_fit = [&spec](const ZoneSpec& zone) {
+    return std::ranges::any_of(zone.own, [&](const auto& number) { return is_of_fit(spec, zone, number.first); });
   };
   return of_fit(spec.default_ground) || std::ranges::any_of(spec.zones, of_fit);
+}
+
+void warn_of_no_skill(const ScenarioSpec& spec, std::vector<std::string>& warnings) {
+  const std::optional<Reduction>& skill = spec.fitted_on.skill;
+  if (!skill || skill->share > 0.0 || !uses_fit(spec)) return;
+  warnings.push_back(spec.fitted_on.file.where + ": the fit has no skill: " + skill_in_words(*skill) +
+                     ": the measurements of its campaign, without any model, tell as well or better where its blocks "
+                     "go: do not use it (unsafe); see the report of the fit beside it");
 }
 
 void warn_of_other_coefficient(const ScenarioSpec& spec, std::vector<std::string>& warnings) {
   const std::optional<double>& fitted = spec.fitted_on.deformation_coefficient;
   const double here = spec.values.impact.deformation_coefficient;
   if (!fitted || here == *fitted || !uses_fit(spec)) return;
-  warnings.push_back(spec.include.where + ": was fitted with the deformation coefficient c = " + text_of(*fitted) +
-                     ", and this run takes " + text_of(here) + " (" + spec.origin("model.deformation_coefficient") +
+  warnings.push_back(spec.fitted_on.file.where +
+                     ": was fitted with the deformation coefficient c = " + text_of(*fitted) + ", and this run takes " +
+                     text_of(here) + " (" + spec.origin("model.deformation_coefficient") +
                      "): a fitted ground holds only for the c of its fit: fit it again with this c, in [model] of the "
                      "model from which the fit starts (--parameters)");
 }

@@ -1,11 +1,25 @@
 #pragma once
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "scenario_spec.hpp"
+#include "table_reader.hpp"
 #include "talus/terrain/surface.hpp"
 
 namespace talus::io {
+
+/// Reads `fitted_cell`, `fitted_diameters` and `fitted_skill`, in the file of a model and in [fit].
+void read_fitted(TableReader& table, FittedOn& fitted);
+
+/// Reads [fit] of the scenario that a run has written: what is known of the fit of its ground.
+void read_fit(ScenarioSpec& spec, TableReader table, const std::filesystem::path& base);
+
+/// "-11.0 % (95 %: -25.0 to 2.0 %)".
+std::string skill_in_words(const Reduction& skill);
+
+/// "[-0.11, -0.25, 0.02]": value and interval; without an interval the value alone.
+std::string skill_list(const Reduction& skill);
 
 /// Warns where a model was fitted on another kind of surface, or on cells of another size, than it is used on: a ground
 /// makes up for what its DEM does not show. docs/validation.md, "Cells and trajectories".
@@ -16,8 +30,14 @@ namespace talus::io {
 void warn_of_other_terrain(const ScenarioSpec& spec, const Grid& grid, SurfaceKind kind, const std::string& where,
                            const std::string& used, const std::string& remedy, std::vector<std::string>& warnings);
 
-/// Whether a ground of the scenario has a number of the included model.
+/// Whether a number of a ground is that of a fitted model.
+bool is_of_fit(const ScenarioSpec& spec, const ZoneSpec& zone, const std::string& key);
+
+/// Whether a ground of the scenario has such a number.
 bool uses_fit(const ScenarioSpec& spec);
+
+/// Warns where the fit of the ground has no skill.
+void warn_of_no_skill(const ScenarioSpec& spec, std::vector<std::string>& warnings);
 
 /// Warns where a run changes c of the impact law under a ground that was fitted with another one.
 void warn_of_other_coefficient(const ScenarioSpec& spec, std::vector<std::string>& warnings);

@@ -196,6 +196,29 @@ void warn_of_dams(const Surface& surface, const Cover& cover, std::vector<std::s
                             "take surface = \"creased\", or a finer DEM"));
 }
 
+/// Warns where the fit of the ground has no skill, or the run differs from it.
+void warn_of_fit(const ScenarioSpec& spec, const Grid& grid, std::vector<std::string>& warnings) {
+  const FittedOn& fitted = spec.fitted_on;
+  warn_of_no_skill(spec, warnings);
+  warn_of_other_terrain(spec, grid, spec.surface, fitted.file.where, "this run is",
+                        " (" + spec.origin("surface") + "): fit it again, or " +
+                            (spec.include.path.empty() && fitted.surface
+                                 ? "take surface = \"" + std::string(name_of(*fitted.surface)) + "\""
+                                 : "leave `surface` to the included file"),
+                        warnings);
+  warn_of_other_coefficient(spec, warnings);
+}
+
+/// The file of the fitted model with its checksum: as included, or as [fit] names it, which is not read again.
+void record_fit(ScenarioSpec& spec, std::vector<InputFile>& inputs) {
+  FittedOn& fitted = spec.fitted_on;
+  const auto included = std::ranges::find(inputs, "include", &InputFile::role);
+  if (included != inputs.end())
+    fitted.sha256 = included->sha256;
+  else if (!fitted.file.path.empty())
+    inputs.insert(inputs.begin() + 1, {"include", fitted.file.path, fitted.sha256});
+}
+
 SourceLayer load_sources(const ScenarioSpec& spec, const Terrain& terrain, const Scenario& parts, LoadedScenario& out) {
   SourceLayer sources = read_sources(spec.sources.path, terrain, spec.release_height, spec.source_fields);
   out.notes.push_back(sources.read_note);
@@ -249,10 +272,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
     out.warnings.push_back(spec.include.where +
                            ": its [[instrument_bias]] is left out: it says how instruments of the "
                            "campaign read, and belongs to no place");
-  warn_of_other_terrain(spec, terrain.heights.grid, spec.surface, spec.include.where, "this run is",
-                        " (" + spec.origin("surface") + "): fit it again, or leave `surface` to the included file",
-                        out.warnings);
-  warn_of_other_coefficient(spec, out.warnings);
+  warn_of_fit(spec, terrain.heights.grid, out.warnings);
   stop_at_faults(faults, all_faults);
   parts.features = std::move(sources.features);
   parts.sources = std::move(sources.cells);
@@ -263,11 +283,12 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   warn_of_sizes(spec, out.scenario, out.warnings);
   tell_of_effects(out);
 
+  for (const auto& [role, file] : spec.inputs()) out.inputs.push_back(recorded_input(role, file->path));
+  record_fit(spec, out.inputs);
   out.complete_toml = toml_of(spec);
   out.settings = settings_of(spec);
   out.spec = std::make_shared<ScenarioSpec>(spec);
   out.settings.insert(out.settings.end(), sources.attributes.begin(), sources.attributes.end());
-  for (const auto& [role, file] : spec.inputs()) out.inputs.push_back(recorded_input(role, file->path));
   return out;
 }
 

@@ -32,6 +32,7 @@ std::string plan_checksum(const LoadedScenario& loaded, std::uint32_t rounds) {
   ScenarioSpec spec = *loaded.spec;
   spec.values.trajectories /= rounds;
   spec.vrt_folders.clear();
+  spec.fitted_on = {};  // changes no result, and the plans of earlier versions keep their checksum
   for (NamedFile* file : {&spec.dem, &spec.sources, &spec.ground, &spec.screens, &spec.barriers}) strip_folder(*file);
   for (auto& [name, effect] : spec.effects) {
     strip_folder(effect.file);

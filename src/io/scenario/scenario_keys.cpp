@@ -7,6 +7,7 @@
 #include "barrier_keys.hpp"
 #include "effect_keys.hpp"
 #include "file_kind.hpp"
+#include "fitted_on.hpp"
 #include "frequency_keys.hpp"
 #include "ground_keys.hpp"
 #include "io/gdal/csv_table.hpp"
@@ -22,11 +23,6 @@
 namespace talus::io {
 
 namespace {
-
-constexpr Bounds kFittedCell{"fitted_cell", "m",    "side of the cells of the DEM on which a model was fitted",
-                             0.0,           1000.0, Bounds::AboveMin};
-constexpr Bounds kFittedDiameters{"fitted_diameters", "m", "of the blocks to which a model was fitted", 0.0, 1000.0,
-                                  Bounds::AboveMin};
 
 using Kind = TomlValue::Kind;
 
@@ -65,6 +61,7 @@ class SpecReader {
     const bool any = barriers.find("file") != nullptr || !spec_.barrier_lines.empty();
     finish_barriers(barriers, any, faults_before, "file = \"...\" or line = [...]");
     read_frequency(spec_, top.table("frequency"), origin_);
+    read_fit(spec_, top.table("fit"), base_);
     top.finish();
   }
 
@@ -80,9 +77,10 @@ class SpecReader {
   void read_model_keys(const TomlValue& root) {
     TableReader top(&root, "", file_, faults_);
     FittedOn& fitted = spec_.fitted_on;
+    fitted.file = spec_.include;
+    given("fit");
     fitted.surface = surface(top);
-    fitted.cell = top.number("fitted_cell", kFittedCell);
-    fitted.diameters = top.range("fitted_diameters", kFittedDiameters);
+    read_fitted(top, fitted);
     TableReader ground = top.table("ground");
     GroundReader(spec_, origin_, faults_).read(ground);
     ground.finish();

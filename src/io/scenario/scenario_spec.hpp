@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "named_file.hpp"
+#include "talus/fit/score/intervals.hpp"
 #include "talus/io/gdal/source_fields.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -66,19 +67,24 @@ struct ProfileSpec {
   double bin = 5.0;             ///< of the results [m]
 };
 
-/// Terrain, blocks and c to which a model was fitted, as far as its file says so.
+/// Terrain, blocks and c to which a model was fitted, as far as its file says so. The scenario that a run writes keeps
+/// them in [fit].
 struct FittedOn {
+  NamedFile file;                                           ///< of the model: included, or that of [fit]
+  std::string sha256;                                       ///< of the file when it was included
+  std::map<std::string, std::vector<std::string>> numbers;  ///< of [fit.zones]: the keys of each ground that are fitted
   std::optional<SurfaceKind> surface;
   std::optional<double> cell;                     ///< side of the cells of the DEM [m]
   std::optional<Range> diameters;                 ///< of the blocks [m]
   std::optional<double> deformation_coefficient;  ///< c of the impact law [-]
+  std::optional<Reduction> skill;                 ///< over the climatology; the interval may be unknown
 };
 
 /// Content of a scenario file and the flags, before any other file is opened.
 struct ScenarioSpec {
   NamedFile scenario, include, dem, sources, ground, screens, barriers;
   SurfaceKind surface = kDefaultSurface;
-  FittedOn fitted_on;                    ///< of an included model
+  FittedOn fitted_on;                    ///< of a model that is included, or was in an earlier run
   std::vector<std::string> vrt_folders;  ///< below which a VRT may name files; where a VRT is named
   std::string zones_where;  ///< "scenario.toml:12": [ground.zones] of the scenario, for messages; empty: it has none
   std::string ground_field;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "barrier_keys.hpp"
+#include "fitted_on.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
@@ -99,6 +100,7 @@ class Lines {
     if (!spec.barrier_lines.empty()) add("barriers", "line", barrier_lines_text(spec.barrier_lines), "");
     frequency();
     effects();
+    fit();
   }
   const std::vector<Line>& lines() const { return lines_; }
 
@@ -184,6 +186,33 @@ class Lines {
       else if (!field.by_cell || trees == effect.maps.end())
         add(table, key, text_of(field.get(spec_.values.effects)), field.unit == "1" ? "" : std::string(field.unit));
     }
+  }
+
+  /// What is known of the fit of the ground, so that a run that repeats this one says of it what this one says.
+  void fit() {
+    const FittedOn& fitted = spec_.fitted_on;
+    if (fitted.file.path.empty()) return;
+    const auto line = [&](const char* key, const std::string& value, const char* unit = "", bool is_text = false) {
+      lines_.push_back({"fit", key, value, unit, spec_.origin("fit"), std::string("fit.") + key, is_text});
+    };
+    line("file", fitted.file.path, "", true);
+    if (!fitted.sha256.empty()) line("sha256", fitted.sha256, "", true);
+    if (fitted.surface) line("surface", std::string(name_of(*fitted.surface)), "", true);
+    if (fitted.cell) line("fitted_cell", text_of(*fitted.cell), "m");
+    if (fitted.diameters) line("fitted_diameters", list_text({fitted.diameters->low, fitted.diameters->high}), "m");
+    if (fitted.skill) line("fitted_skill", skill_list(*fitted.skill));
+    if (fitted.deformation_coefficient) line("deformation_coefficient", text_of(*fitted.deformation_coefficient));
+    fitted_numbers(spec_.default_ground);
+    for (const ZoneSpec& zone : spec_.zones) fitted_numbers(zone);
+  }
+
+  void fitted_numbers(const ZoneSpec& zone) {
+    std::vector<std::string> keys;
+    for (const auto& [key, origin] : zone.own)
+      if (is_of_fit(spec_, zone, key)) keys.push_back(key);
+    if (!keys.empty())
+      lines_.push_back(
+          {"fit.zones", toml_key(zone.name), texts(keys), "", spec_.origin("fit"), "fit.zones." + zone.name});
   }
 
   void ground() {

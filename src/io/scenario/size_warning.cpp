@@ -14,12 +14,13 @@
 namespace talus::io {
 namespace {
 
+constexpr double kFitTolerance = 0.1;  // of the diameters to which a ground was fitted: they are measured no better
+
 /// Whether a number of a ground is that of its preset. A complete scenario, as a run writes it, gives every number
 /// beside the preset, so that there only the values tell. A model that was fitted (`include`) has its own.
-bool from_preset(const ZoneSpec& zone, std::string_view key) {
-  const auto own = zone.own.find(std::string(key));
-  if (own == zone.own.end()) return true;
-  if (!zone.gives_all() || own->second != "scenario") return false;
+bool from_preset(const ScenarioSpec& spec, const ZoneSpec& zone, const std::string& key) {
+  if (!zone.own.contains(key)) return true;
+  if (!zone.gives_all() || is_of_fit(spec, zone, key)) return false;
   const Ground& preset = find_preset(zone.preset).ground;
   return std::ranges::any_of(ground_fields(), [&](const auto& field) {
     return field.key == key && field.get(zone.ground) == field.get(preset);
@@ -88,11 +89,12 @@ void warn_of_sizes(const ScenarioSpec& spec, const Scenario& scenario, std::vect
   const std::vector<const ZoneSpec*> grounds = used_grounds(spec, scenario);
   std::vector<const Preset*> presets;
   for (const ZoneSpec* zone : grounds)
-    if (from_preset(*zone, "theta_scale") || from_preset(*zone, "En50")) presets.push_back(&find_preset(zone->preset));
-  const std::string file = std::filesystem::path(spec.include.path).filename().string();
+    if (from_preset(spec, *zone, "theta_scale") || from_preset(spec, *zone, "En50"))
+      presets.push_back(&find_preset(zone->preset));
+  const std::string file = std::filesystem::path(spec.fitted_on.file.path).filename().string();
   Preset fitted{.name = file, .ground = {}, .source = {}, .where = {}, .sizes = {}};
   if (const std::optional<Range>& sizes = spec.fitted_on.diameters; sizes && uses_fit(spec)) {
-    fitted.sizes = {sizes->low, sizes->high, {}, true, true};
+    fitted.sizes = {sizes->low, sizes->high, {}, true, true, kFitTolerance};
     presets.push_back(&fitted);
   }
   for (std::string& warning :

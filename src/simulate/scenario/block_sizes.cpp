@@ -16,14 +16,12 @@ void widen(Range& all, const Range& range) {
   all = {std::min(all.low, range.low), std::max(all.high, range.high)};
 }
 
-constexpr double kRounding = 1e-9;
-
 bool below(const FittedSizes& sizes, const Range& diameters) {
-  return sizes.known() && diameters.low < sizes.smallest * (1.0 - kRounding);
+  return sizes.known() && diameters.low < sizes.smallest * (1.0 - sizes.tolerance);
 }
 
 bool above(const FittedSizes& sizes, const Range& diameters) {
-  return sizes.known() && diameters.high > sizes.largest * (1.0 + kRounding);
+  return sizes.known() && diameters.high > sizes.largest * (1.0 + sizes.tolerance);
 }
 
 /// What is wrong with blocks that are larger, or smaller, than those that the ground was fitted to.

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "talus/fit/campaign/observe.hpp"
+#include "talus/fit/score/intervals.hpp"
 #include "talus/io/campaign/campaign_file.hpp"
 
 namespace talus::io {
@@ -22,6 +23,8 @@ InputFile model_input(const std::string& path);
 /// scenario can `include` it. A band of other ground is left out.
 ///
 /// @param heading  comment lines for the top, without the marks
-std::string model_text(const Model& model, const LoadedCampaign& loaded, const std::string& heading);
+/// @param skill    of the fit over the climatology; NaN: left out
+std::string model_text(const Model& model, const LoadedCampaign& loaded, const std::string& heading,
+                       const Reduction& skill = {});
 
 }  // namespace talus::io

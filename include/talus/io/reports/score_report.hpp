@@ -90,6 +90,13 @@ Reduction skill_over_climatology(const ScoredRows& scored);
 /// scored.
 std::string skill_sentence(const ScoredRows& scored);
 
+/// The skill that this sentence judges, over the better climatology. Of rows that were fitted the lower end of its
+/// interval is less what fitting gains on them without any skill. NaN where it cannot be told.
+Reduction judged_skill(const ScoredRows& scored);
+
+/// The skill of a fitted model: on rows that it has not seen, or, where these tell nothing, on those that were fitted.
+Reduction skill_of_model(const ScoredRows& fitting, const ScoredRows& unseen);
+
 /// The same without the groups of fewer than ten rows: score, climatology and skill. Nothing else of it changes.
 ScoredRows in_large_groups(ScoredRows scored, std::span<const std::uint32_t> clusters);
 /// The error in the far run-outs in words. Empty where it was not scored.

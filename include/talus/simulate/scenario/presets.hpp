@@ -16,6 +16,7 @@ struct FittedSizes {
   std::string_view source;  ///< where the paper, or the literature about its site, says so
   bool fitted = true;       ///< false: the set is a first guess that no data support
   bool of_pieces = false;   ///< blocks may have broken in the fit, so that pieces are smaller there, too
+  double tolerance = 1e-9;  ///< share by which diameters may be outside
 
   bool known() const { return !std::isnan(smallest); }
 };
