@@ -151,7 +151,7 @@ std::vector<Setting> Checkpoint::settings(std::uint32_t rounds) const {
 void Checkpoint::recall(LoadedScenario& loaded, std::uint32_t rounds) const {
   std::vector<io::InputFile> inputs = inputs_;
   for (io::InputFile& input : inputs) {
-    if (input.role == "scenario" || input.role == "include") continue;  // the complete scenario stands for both
+    if (input.role == "scenario" || input.role == io::kFittedModel) continue;  // the complete scenario stands for both
     const auto here = std::ranges::find(loaded.inputs, input.role, &io::InputFile::role);
     if (here != loaded.inputs.end()) input = *here;
   }

@@ -163,7 +163,7 @@ void RunSession::make_folder() {
 
 void RunSession::warn_of_input() {
   for (const std::string& note : plan_.loaded.notes) observer_.message(note);
-  const auto low_c = io::coefficient_note(plan_.loaded.scenario.impact.deformation_coefficient);
+  const auto low_c = io::coefficient_note(plan_.loaded);
   if (low_c) observer_.message("note: " + *low_c);
   for (const std::string& warning : plan_.loaded.warnings) observer_.warning(warning);
   const Rounds& rounds = plan_.rounds;

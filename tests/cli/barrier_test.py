@@ -191,13 +191,20 @@ class Design(Case):
                 self.assertTrue(notes[0].startswith(f"blocks cross up to {ends} of the line, and so probably beyond"), notes)
 
     def test_the_coefficient_is_pointed_out(self):
-        """A lower c raises energies (docs/barrier.md): notes of runs above c = 0.15."""
+        """A lower c raises energies (docs/barrier.md): notes of runs above c = 0.15. A ground that was fitted with it is fitted again."""
+        run = self.record()
         for c, said in ((0.5, True), (0.25, True), (0.2, True), (0.15, False), (0.125, False)):
-            record = self.record() | {"deformation_coefficient": c}
+            record = run | {"deformation_coefficient": c}
             self.write("out/run.json", json.dumps(record))
             notes = " ".join(self.design()[1]["notes"])
             self.assertEqual("energies, jumps, run-out and hits may be too low (unsafe): c = " + str(c) in notes, said, notes)
-            self.assertEqual("run with --deformation-coefficient 0.15 as well" in notes, said, notes)
+            self.assertEqual("Run with --deformation-coefficient 0.15 as well" in notes, said, notes)
+            self.assertNotIn("The ground was fitted", notes)
+            record["inputs"] = run["inputs"] + [{"role": "include", "path": "/fitted.toml", "sha256": "0"}]
+            self.write("out/run.json", json.dumps(record))
+            notes = " ".join(self.design()[1]["notes"])
+            self.assertEqual("The ground was fitted, and holds for the c of its fit alone: unless speeds were measured, fit it again" in notes, said, notes)
+            self.assertNotIn("--deformation-coefficient", notes)
 
     def test_what_the_run_warned_of_is_said_again(self):
         run = self.record()

@@ -678,7 +678,7 @@ class Faults(OnASlope):
             self.assertEqual(len(notes), told is not None)
             if told:
                 self.assertIn(f"energies, jumps, run-out and hits may be too low (unsafe): c = {told} ", notes[0])
-                self.assertIn("run with --deformation-coefficient 0.15 as well", notes[0])
+                self.assertIn("Run with --deformation-coefficient 0.15 as well", notes[0])
         self.scenario("x = 20")
         self.assertEqual(self.profile("--trajectories", "5", "--overwrite").stderr, "")
 

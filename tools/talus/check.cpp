@@ -270,8 +270,7 @@ void print_plan(const CheckOptions& options, const LoadedScenario& loaded) {
   print_terrain(loaded, !options.pits.empty());
   print_zones(loaded.scenario);
   for (const std::string& note : loaded.notes) line("read", note);
-  if (const auto note = talus::io::coefficient_note(loaded.scenario.impact.deformation_coefficient))
-    line("note", *note);
+  if (const auto note = talus::io::coefficient_note(loaded)) line("note", *note);
   print_blocks(loaded.scenario);
   print_estimate(loaded, options.threads);
   for (const std::string& warning : loaded.warnings) line("warning", warning);

@@ -130,8 +130,7 @@ talus::io::ProfileResults simulate_and_write(const ProfileOptions& options, cons
 
 /// Says what the figures rest on, before the blocks are traced.
 void say_of_input(const talus::io::LoadedScenario& loaded) {
-  if (const auto low_c = talus::io::coefficient_note(loaded.scenario.impact.deformation_coefficient))
-    say("", "note: " + *low_c);
+  if (const auto low_c = talus::io::coefficient_note(loaded)) say("", "note: " + *low_c);
   for (const std::string& warning : loaded.warnings) say("warning", warning);
 }
 

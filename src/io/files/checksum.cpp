@@ -115,7 +115,7 @@ std::string sha256_of_bytes(std::string_view bytes) {
 std::vector<std::string> changed_inputs(std::span<const InputFile> before, std::span<const InputFile> now) {
   std::vector<std::string> words;
   for (const InputFile& file : now) {
-    if (file.role == "scenario" || file.role == "include") continue;
+    if (file.role == "scenario" || file.role == kFittedModel) continue;
     const auto was = std::ranges::find(before, file.role, &InputFile::role);
     if (was == before.end() || was->sha256 != file.sha256)
       words.push_back((file.sha256 == file.content ? "" : "perhaps ") +

@@ -125,7 +125,7 @@ Markup predicts(const DiagnosisRecord& record) {
   ScoredRows rows = record.errors[record.unseen].after;
   const std::string side = runout_side(rows);
   if (!in_all_groups(record)) rows = in_large_groups(std::move(rows), record.clusters);
-  const Reduction skill = skill_over_climatology(rows);
+  const Reduction skill = judged_skill(rows);
   Markup text = std::isnan(skill.share)       ? "It cannot be said."_html
                 : !(skill.share > 0.0)        ? bold("No: do not take it for a map.")
                 : !(skill.interval.low > 0.0) ? bold("Not shown.")

@@ -84,7 +84,7 @@ void read_diagnosis(const Json& json, FitPart& part) {
 }  // namespace
 
 std::optional<FitPart> read_fit_part(const RunFacts& run) {
-  const InputFile* const model = run.input("include");
+  const InputFile* const model = run.input(kFittedModel);
   if (model == nullptr) return std::nullopt;
   FitPart part;
   part.file = model->path;

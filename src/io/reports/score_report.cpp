@@ -265,10 +265,6 @@ ScoredRows in_large_groups(ScoredRows scored, std::span<const std::uint32_t> clu
   return scored;
 }
 
-Reduction skill_over_climatology(const ScoredRows& scored) {
-  return rival_of(scored).skill;
-}
-
 std::string skill_sentence(const ScoredRows& s) {
   if (hardly_simulated(s.score))
     return rows_in_words(s.rows) + " rows: skill cannot be told: " + percent(unseen_share(s.score)) +

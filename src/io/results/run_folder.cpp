@@ -17,6 +17,7 @@
 #include "talus/io/gdal/vectors.hpp"
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/run_record.hpp"
+#include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
 
@@ -70,7 +71,10 @@ std::pair<int, int> series_of(std::string_view text) {
 
 std::optional<std::string> recorded_coefficient_note(const Json& run) {
   if (!run.contains("deformation_coefficient") || !run["deformation_coefficient"].is_number()) return std::nullopt;
-  return coefficient_note(run["deformation_coefficient"].get<double>());
+  const Json inputs = run.value("inputs", Json::array());
+  const bool fitted =
+      std::ranges::any_of(inputs, [](const Json& input) { return input.value("role", "") == kFittedModel; });
+  return coefficient_note(run["deformation_coefficient"].get<double>(), fitted);
 }
 
 /// That the figures hold only while the barriers of the run stand; nothing if none stood there.
@@ -144,14 +148,23 @@ std::optional<std::string> later_version_note(const std::string& written) {
          ": what is new in it is not read; use that version or a later one";
 }
 
-std::optional<std::string> coefficient_note(double c) {
+std::optional<std::string> coefficient_note(double c, bool fitted) {
   constexpr double kLowC = 0.15;  // the SEL of the paper's Table 4 asks for 0.09 to 0.16
   if (!(c > kLowC)) return std::nullopt;
   return "energies, jumps, run-out and hits may be too low (unsafe): c = " + text_of(c) +
-         " (model.deformation_coefficient) is not given by the paper, and a lower c raises them. With the ground of "
-         "a preset run with --deformation-coefficient 0.15 as well and take the higher values; a fitted ground holds "
-         "for its own c alone: unless speeds were measured, fit it again with 0.15: "
-         "docs/barrier.md, \"The value of c\"";
+         " (model.deformation_coefficient) is not given by the paper, and a lower c raises them. " +
+         (fitted
+              ? "The ground was fitted, and holds for the c of its fit alone: unless speeds were measured, fit it "
+                "again with [model] "
+                "deformation_coefficient = 0.15 in the file of calibrate --parameters, run with that ground as well, "
+                "and take the higher values"
+              : "Run with --deformation-coefficient 0.15 as well, and take the higher values") +
+         ": docs/barrier.md, \"The value of c\"";
+}
+
+std::optional<std::string> coefficient_note(const LoadedScenario& loaded) {
+  const bool fitted = std::ranges::any_of(loaded.inputs, [](const InputFile& i) { return i.role == kFittedModel; });
+  return coefficient_note(loaded.scenario.impact.deformation_coefficient, fitted);
 }
 
 std::string barriers_text(std::size_t barriers, const std::string& caught, bool pieces) {

@@ -212,11 +212,11 @@ void warn_of_fit(const ScenarioSpec& spec, const Grid& grid, std::vector<std::st
 /// The file of the fitted model with its checksum: as included, or as [fit] names it, which is not read again.
 void record_fit(ScenarioSpec& spec, std::vector<InputFile>& inputs) {
   FittedOn& fitted = spec.fitted_on;
-  const auto included = std::ranges::find(inputs, "include", &InputFile::role);
+  const auto included = std::ranges::find(inputs, kFittedModel, &InputFile::role);
   if (included != inputs.end())
     fitted.sha256 = included->sha256;
   else if (!fitted.file.path.empty())
-    inputs.insert(inputs.begin() + 1, {"include", fitted.file.path, fitted.sha256});
+    inputs.insert(inputs.begin() + 1, {kFittedModel, fitted.file.path, fitted.sha256});
 }
 
 SourceLayer load_sources(const ScenarioSpec& spec, const Terrain& terrain, const Scenario& parts, LoadedScenario& out) {

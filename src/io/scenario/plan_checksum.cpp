@@ -41,7 +41,7 @@ std::string plan_checksum(const LoadedScenario& loaded, std::uint32_t rounds) {
   Sha256 sum;
   sum.add(toml_of(spec));
   for (const InputFile& input : loaded.inputs)
-    if (input.role != "scenario" && input.role != "include") sum.add(input.role + input.content + "\n");
+    if (input.role != "scenario" && input.role != kFittedModel) sum.add(input.role + input.content + "\n");
   if (fields_changed_meaning(loaded)) sum.add("release_height\n");
   return sum.digits();
 }

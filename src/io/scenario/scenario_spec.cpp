@@ -10,8 +10,9 @@ namespace {
 template <class Spec>
 auto named_files(Spec& spec) {
   std::vector<std::pair<std::string, decltype(&spec.dem)>> files{
-      {"scenario", &spec.scenario}, {"include", &spec.include}, {"dem", &spec.dem},          {"sources", &spec.sources},
-      {"ground", &spec.ground},     {"screens", &spec.screens}, {"barriers", &spec.barriers}};
+      {"scenario", &spec.scenario}, {kFittedModel, &spec.include}, {"dem", &spec.dem},
+      {"sources", &spec.sources},   {"ground", &spec.ground},      {"screens", &spec.screens},
+      {"barriers", &spec.barriers}};
   for (auto& [name, effect] : spec.effects) {
     files.emplace_back("effects." + name, &effect.file);
     for (auto& [key, map] : effect.maps) files.emplace_back("effects." + name + "." + key, &map);

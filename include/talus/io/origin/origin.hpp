@@ -16,9 +16,12 @@ struct Setting {
       source;  ///< "scenario", "flag --seed", "preset forest-road-3d", "default", "attribute diameter of cliffs.shp"
 };
 
+/// Role of the model that a scenario includes: a ground that talus calibrate or diagnose has fitted.
+inline constexpr const char* kFittedModel = "include";
+
 /// A file that was read.
 struct InputFile {
-  std::string role;  ///< "dem", "sources", "ground", "screens", "scenario"
+  std::string role;  ///< "dem", "sources", "ground", "screens", "scenario", kFittedModel
   std::string path;  ///< absolute
   std::string
       sha256;  ///< of the bytes of all its files, one after the other (a shapefile: of .shp, .dbf, .shx, .prj, .cpg)

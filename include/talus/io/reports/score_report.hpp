@@ -83,9 +83,6 @@ std::vector<std::string> unscored_warnings(const ScoredRows& scored);
 /// a simulated percentile that a right model does not give.
 std::vector<std::string> score_warnings(const ScoredRows& scored);
 
-/// The skill over the better climatology; NaN for a model that hardly simulates what was measured.
-Reduction skill_over_climatology(const ScoredRows& scored);
-
 /// Whether the model beats the climatology, in words: "no skill: ..." where it does not. Empty where nothing was
 /// scored.
 std::string skill_sentence(const ScoredRows& scored);

@@ -9,6 +9,8 @@
 
 namespace talus::io {
 
+struct LoadedScenario;
+
 /// How a command uses the results of a run.
 struct ResultsUse {
   const GivenFrequencies& frequency;  ///< another weighting than the run's; without a file: the run's own
@@ -29,7 +31,10 @@ std::optional<std::string> later_version_note(const std::string& written);
 
 /// One line that energies rest on c (model.deformation_coefficient), and which way is safe; nothing if c is low.
 /// docs/barrier.md, "The value of c".
-std::optional<std::string> coefficient_note(double c);
+/// @param fitted  the ground was fitted: another c needs another fit
+std::optional<std::string> coefficient_note(double c, bool fitted);
+/// The same of a run, whose inputs tell whether its ground was fitted.
+std::optional<std::string> coefficient_note(const LoadedScenario& loaded);
 
 /// "2 barriers stood in the run and caught 3335 blocks"; "blocks and pieces" if blocks broke.
 /// @param caught  their number as text
