@@ -159,10 +159,10 @@ class OwnCampaign(Case):
 
     def test_an_error_that_hides_the_model_is_said(self):  # in cm; any model is then as good as the true one
         arguments = ["score", self.campaign, "--parameters", self.path("truth.toml"), "--trials", "20"]
-        self.assertNotIn("is more than a quarter of the spread", self.run_well(*arguments).stderr)
+        self.assertNotIn("is more than half of the spread", self.run_well(*arguments).stderr)
         self.write("campaign.toml", self.read_text("campaign.toml").replace("position_m = 0.3", "position_m = 30"))
         done = self.run_well(*arguments)
-        self.assertIn("campaign.toml: [measurement_error] position_m = 30: is more than a quarter of the spread", done.stderr)
+        self.assertIn("campaign.toml: [measurement_error] position_m = 30: is more than half of the spread", done.stderr)
         self.assertIn("position_m = 30", " ".join(json.loads(self.run_well(*arguments, "--json", "-q").stdout)["warnings"]))
 
     def test_tables_of_a_header_alone_are_said(self):  # they passed for tables of blocks that nobody measured

@@ -190,6 +190,20 @@ shape = [1, 1.5]
             for _, one in changes:
                 self.assertEqual(sum(one in warning for warning in warnings), one in (words, changes[0][1]), (flags, one, warnings))
 
+    def test_a_ground_is_fitted_if_a_number_of_it_is(self):
+        """A model of which the scenario replaces the ground, and one of effects alone, leave the ground that of a preset."""
+        everything = "[ground]\ndefault = \"forest-road-3d\"\n"
+        for model, own, fitted in ((self.FIT, "", True), (self.FIT, everything, False), ("[model]\nroughness = \"resample\"\n", "", False)):
+            self.write("m.toml", model.replace("deformation_coefficient = 0.15\n", "") if fitted or own else model)
+            self.write("own.toml", self.read_text("s.toml") + own)
+            said = self.run_well("run", self.path("own.toml"), "-o", self.path("out"), "--overwrite").stderr
+            self.assertEqual("The ground was fitted, and holds for the c of its fit alone" in said, fitted, said)
+            self.assertEqual("Run with --deformation-coefficient 0.15 as well" in said, not fitted, said)
+            self.run_well("report", self.path("out"))
+            page = self.read_text("out/report.html")
+            self.assertEqual("The ground was fitted, and holds" in page, fitted)
+            self.assertEqual("Fit of the ground</h2>" in page, fitted)
+
     def test_what_is_known_of_a_fit_is_no_part_of_the_plan(self):
         """It changes no result: parts and checkpoints of earlier versions fit together with those of this one."""
         plans = set()
@@ -205,6 +219,8 @@ shape = [1, 1.5]
         text = self.read_text("out/scenario.toml")
         for old, new, *words in (("fitted_cell = 5", "fitted_cell = -5", "fit.fitted_cell = -5"), ("file = ", "# file = ", "[fit]: names no file"), ("file = ", "file = 5 # ", "fit.file = 5"),
                                  ('default = ["En50"', 'default = [1, "En50"', "fit.zones.default", "list of keys"),
+                                 ('default = ["En50"', 'default = ["nonsense"', "fit.zones.default", "list of keys of a ground"),
+                                 ("default = [", "talus = [", "fit.zones.talus", "must be a ground of this scenario: rename it here as in [ground.zones]"),
                                  ("dem = ", 'include = "../m.toml"\ndem = ', "[fit]", "must not come with include")):
             head, tail = text.split("[fit]")
             self.write("out/mine.toml", head.replace(old, new) + "[fit]" + tail if old == "dem = " else head + "[fit]" + tail.replace(old, new, 1))

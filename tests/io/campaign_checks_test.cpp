@@ -51,18 +51,18 @@ std::string five(const std::string& cells, std::size_t count = 5) {
 
 /// Places of rest with deviations of 14.14 m east and 0 north: 10 m in a coordinate. An error typed in cm was taken,
 /// and made a wrong model look right.
-TEST_F(CampaignChecks, AnErrorOfPlacesAboveAQuarterOfTheirSpread) {
+TEST_F(CampaignChecks, AnErrorOfPlacesAboveHalfOfTheirSpread) {
   const std::string blocks = kHead + five("600050,5200020,1,500");
   const std::string stops =
       "id,x,y\na,600030,5200050\nb,600040,5200050\nc,600050,5200050\nd,600060,5200050\ne,600070,5200050\n";
-  EXPECT_TRUE(warnings(blocks, stops, "position_m = 2.5\n").empty());
-  one(warnings(blocks, stops, "position_m = 2.6\n"),
-      {"c.toml: [measurement_error] position_m = 2.6: is more than a quarter", "places of rest",
-       "standard deviation is 10 m (5 values)", "in m, such as 0.5 for 50 cm"});
+  EXPECT_TRUE(warnings(blocks, stops, "position_m = 5\n").empty());
+  one(warnings(blocks, stops, "position_m = 5.1\n"),
+      {"c.toml: [measurement_error] position_m = 5.1: is more than half", "places of rest",
+       "standard deviation is 10 m (5 values)", "in m, such as 0.3 for 30 cm"});
   EXPECT_TRUE(warnings(blocks, stops.substr(0, stops.find('e')), "position_m = 50\n").empty());  // 4: no spread yet
 }
 
-TEST_F(CampaignChecks, OtherErrorsAboveAQuarterOfTheSpread) {
+TEST_F(CampaignChecks, OtherErrorsAboveHalfOfTheSpread) {
   write_text("screens.csv", "id,wkt\nS1,\"LINESTRING (600010 5200040, 600090 5200040)\"\n");
   write_text("passages.csv",
              "id,screen,speed_ms,jump_height_m,angular_velocity_rads\n"
@@ -72,11 +72,11 @@ TEST_F(CampaignChecks, OtherErrorsAboveAQuarterOfTheSpread) {
     return warnings(blocks, "", errors, "passages = \"passages.csv\"\nscreens = \"screens.csv\"\n");
   };
   // deviations: 2.83 m/s at a mean of 6, 1.41 m, 14.1 rad/s at a mean of 30
-  EXPECT_TRUE(said("speed_fraction = 0.117\njump_height_m = 0.35\nangular_velocity_fraction = 0.117\n").empty());
-  one(said("speed_fraction = 0.119\n"), {"speed_fraction = 0.119, 0.714 m/s of the mean: is more than a quarter",
+  EXPECT_TRUE(said("speed_fraction = 0.235\njump_height_m = 0.7\nangular_velocity_fraction = 0.235\n").empty());
+  one(said("speed_fraction = 0.237\n"), {"speed_fraction = 0.237, 1.42 m/s of the mean: is more than half",
                                          "2.83 m/s (5 values)", "is it a share, such as 0.03 for 3 %?"});
-  one(said("jump_height_m = 0.36\n"), {"jump_height_m = 0.36: is more", "1.41 m (5 values)"});
-  one(said("angular_velocity_fraction = 0.119\n"), {"angular_velocity_fraction = 0.119", "14.1 rad/s"});
+  one(said("jump_height_m = 0.71\n"), {"jump_height_m = 0.71: is more", "1.41 m (5 values)"});
+  one(said("angular_velocity_fraction = 0.237\n"), {"angular_velocity_fraction = 0.237", "14.1 rad/s"});
 }
 
 TEST_F(CampaignChecks, HighReleases) {  // the relief of the DEM is 79 m
@@ -84,11 +84,17 @@ TEST_F(CampaignChecks, HighReleases) {  // the relief of the DEM is 79 m
   one(warnings(std::string(kHead) + "a,600050,5200020,300,500\nb,600050,5200020,3,500\n"),
       {"blocks.csv: 1 of 2 blocks are released higher above the ground than 50 m: a (300 m); is release_height_m in "
        "m"});
-  RasterFile low;
-  for (int i = 0; i < 80; ++i) low.values.push_back(1000.0 + i % 10);
-  low.write(path("dem.tif"));
-  EXPECT_TRUE(warnings(std::string(kHead) + "a,600050,5200020,9,500\n").empty());
-  one(warnings(std::string(kHead) + "a,600050,5200020,9.5,500\n"), {"than 9 m, the relief of the DEM: a (9.5 m)"});
+  const auto with_relief = [&](int most) {
+    RasterFile low;
+    for (int i = 0; i < 80; ++i) low.values.push_back(1000.0 + most * (i % 10) / 9.0);
+    low.write(path("dem.tif"));
+  };
+  with_relief(18);
+  EXPECT_TRUE(warnings(std::string(kHead) + "a,600050,5200020,18,500\n").empty());
+  one(warnings(std::string(kHead) + "a,600050,5200020,19,500\n"), {"than 18 m, the relief of the DEM: a (19 m)"});
+  with_relief(0);  // a drop test on a slab
+  EXPECT_TRUE(warnings(std::string(kHead) + "a,600050,5200020,10,500\n").empty());
+  one(warnings(std::string(kHead) + "a,600050,5200020,11,500\n"), {"than 10 m: a (11 m)"});
 }
 
 /// The unit normal is (-0.1, 1, 1) / 1.4177.

@@ -137,8 +137,9 @@ TEST(DiagnosisPage, SaysWhetherTheModelPredicts) {
   after.coverage[0].observable = "runout";
   after.coverage[0].rows = 24;
   after.coverage[0].below[1] = {.count = 7, .expected = {8.0, 16.0}};
-  EXPECT_NE(with_skill(0.2, 0.05).find("<b>71 % of 24 held-out blocks ran farther than the model's median (of a right "
-                                       "model 33 to 67 %): the model may stop blocks too early (unsafe)</b>."),
+  EXPECT_NE(with_skill(0.2, 0.05).find(
+                "<b>71 % of 24 held-out blocks ran farther than the model's median (of a right "
+                "model 33 to 67 %): the model may stop blocks too early (unsafe)</b>; one right model in twenty"),
             std::string::npos);
 }
 

@@ -123,6 +123,10 @@ TEST(ScoreWarnings, OfBlocksWithoutAPlaceOfRestThatStayInTheModel) {
       std::string::npos);
   rows.leaving_trials = {24, 2, 0.0, 1.0, 1e-5};  // two were not found
   EXPECT_TRUE(score_warnings(rows).empty());
+  rows.leaving_trials = {8, 2, 0.0, 1.0, 1e-4};
+  EXPECT_TRUE(score_warnings(rows).empty());
+  rows.leaving_trials = {8, 3, 0.0, 1.0, 1e-6};
+  EXPECT_EQ(score_warnings(rows).size(), 1U);
   rows.leaving_trials = {24, 9, 5.0, 1.0, 0.02};
   EXPECT_TRUE(score_warnings(rows).empty());
   rows.leaving_trials = {24, 24, 0.0, 1.0, 0.0};  // nobody mapped where they stopped
@@ -248,12 +252,18 @@ TEST(SkillSentence, OfFittedRowsTakesWhatTheFitGains) {
 TEST(SkillOfModel, IsThatOnUnseenRows) {
   ScoredRows fitting, unseen;
   fitting.rows = "fit", unseen.rows = "holdout";
-  fitting.skill = {0.3, {0.2, 0.4}};
-  EXPECT_DOUBLE_EQ(skill_of_model(fitting, unseen).share, 0.3);  // there are none, or they tell nothing
-  unseen.climatology = of_two_groups(0.8, 0.8), unseen.ways = of_two_groups(0.5, 0.5);
-  unseen.skill = {0.2, {0.1, 0.3}}, unseen.skill_over_ways = {-0.1, {-0.2, 0.0}};
-  EXPECT_DOUBLE_EQ(skill_of_model(fitting, unseen).share, -0.1);
-  EXPECT_DOUBLE_EQ(skill_of_model(fitting, unseen).interval.low, -0.2);
+  std::vector<std::uint32_t> clusters(12);
+  std::iota(clusters.begin(), clusters.end(), 0U);
+  fitting.compared = fitting.score = of_two_groups(0.35, 9.0);  // the small group does not count
+  fitting.climatology = of_two_groups(0.5, 1.0);
+  const auto skill = [&] { return skill_of_model(fitting, unseen, clusters); };
+  EXPECT_NEAR(skill().share, 0.3, 0.01) << "there are no unseen rows";
+  unseen.compared = unseen.score = of_two_groups(0.55, 0.1);  // its two rows would give it skill
+  unseen.climatology = of_two_groups(0.8, 1.0), unseen.ways = of_two_groups(0.5, 1.0);
+  EXPECT_NEAR(skill().share, -0.1, 0.01) << "over the better climatology";
+  EXPECT_LT(skill().interval.low, skill().share);
+  fitting.deposits.emplace();
+  EXPECT_TRUE(std::isnan(skill().share)) << "blocks anywhere on the mapped ground are no measure";
 }
 
 }  // namespace

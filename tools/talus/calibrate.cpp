@@ -108,12 +108,12 @@ int calibrate(const CalibrateOptions& options) {
   talus::io::write_text(folder.temporary() / "report.md", talus::io::calibration_report(c));
   if (const std::string ranks = talus::io::ranks_picture(c.errors); !ranks.empty())
     talus::io::write_text(folder.temporary() / "ranks.svg", ranks);
-  talus::io::write_text(
-      folder.temporary() / "fitted.toml",
-      talus::io::model_text(c.fit.model, opened.loaded,
-                            "Fitted by talus calibrate to the campaign " + campaign.name +
-                                ".\nUncertainty, and what is not identifiable: report.md.",
-                            talus::io::skill_of_model(c.errors.front().after, c.errors.back().after)));
+  talus::io::write_text(folder.temporary() / "fitted.toml",
+                        talus::io::model_text(c.fit.model, opened.loaded,
+                                              "Fitted by talus calibrate to the campaign " + campaign.name +
+                                                  ".\nUncertainty, and what is not identifiable: report.md.",
+                                              talus::io::skill_of_model(c.errors.front().after, c.errors.back().after,
+                                                                        talus::clusters_of(campaign))));
   folder.commit();
   progress.finish();
   if (!options.quiet) print_summary(c, folder.final_path().string());

@@ -82,16 +82,15 @@ void write_results(const talus::io::OutputFolder& folder, const talus::io::Loade
   const std::filesystem::path& out = folder.temporary();
   talus::io::write_text(out / "diagnosis.json", talus::io::diagnosis_json(record));
   talus::io::write_text(out / "report.html", talus::io::diagnosis_page(loaded.campaign, record));
-  const talus::io::BeforeAfter &fitting = record.errors.front(), &unseen = record.errors[record.unseen];
   talus::io::write_text(out / "fitted.toml",
                         talus::io::model_text(d.base.model, loaded, "The ground alone, fitted by talus diagnose.",
-                                              talus::io::skill_of_model(fitting.before, unseen.before)));
+                                              talus::io::skill_of_ground(record)));
   talus::io::write_text(
       out / "with_effect.toml",
       talus::io::model_text(d.with_effects.model, loaded,
                             d.rounds.size() > 1 ? "The ground and what talus diagnose found missing."
                                                 : "The ground alone: talus diagnose found nothing to add.",
-                            talus::io::skill_of_model(fitting.after, unseen.after)));
+                            talus::io::skill_of_found(record)));
 }
 
 /// Settles whether the loop is repeated without each fold: by default where nothing is held out.

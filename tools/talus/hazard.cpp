@@ -338,7 +338,7 @@ void add_hazard(CLI::App& app, Action& action) {
   });
   command->add_flag("--curves", options->curves,
                     "hazard_curves.tif: how often each energy is exceeded, a band per energy (0, 1, 2, 4, ... kJ and "
-                    "the thresholds; with --width 0 and the thresholds)");
+                    "the thresholds; with --width: 0 and the thresholds)");
   command->add_flag("--overwrite", options->overwrite, "replace the hazard maps that are there");
   add_threads(*command, options->threads);
   add_progress(*command, options->progress);

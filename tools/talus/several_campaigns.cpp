@@ -114,7 +114,8 @@ void OpenedSites::write_models(std::span<const talus::Model> models, const char*
     const std::filesystem::path own = folder.temporary() / sites[i].name;
     std::filesystem::create_directories(own);
     const std::vector<talus::io::BeforeAfter>& errors = evidence[i].errors;
-    const talus::Reduction skill = talus::io::skill_of_model(errors.front().*scored, errors.back().*scored);
+    const talus::Reduction skill = talus::io::skill_of_model(errors.front().*scored, errors.back().*scored,
+                                                             talus::clusters_of(loaded[i].campaign));
     talus::io::write_text(own / name, talus::io::model_text(models[i], loaded[i], heading, skill));
   }
 }

@@ -22,9 +22,15 @@ bool is_own_sphere(const MeasuredBlock& b) {
   return b.axes[0] == b.axes[2] && b.axes[0] == equivalent_diameter(b.mass, b.density);
 }
 
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
 double deviation_of(const std::vector<double>& values) {
-  double mean = 0.0, sum = 0.0;
-  for (const double v : values) mean += v / static_cast<double>(values.size());
+  const double mean = mean_of(values);
+  double sum = 0.0;
   for (const double v : values) sum += (v - mean) * (v - mean);
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
@@ -69,19 +75,16 @@ struct WithError {
 };
 
 void warn_of_error(const std::string& path, const WithError& q, double spread, std::vector<std::string>& warnings) {
-  constexpr double kMostOfSpread = 0.25;
-  double mean = 0.0;
-  for (const double v : q.values) mean += v / static_cast<double>(q.values.size());
-  const double error = q.relative ? q.error * mean : q.error;
+  constexpr double kMostOfSpread = 0.5;  // adds a quarter to the variance of a right model
+  const double error = q.relative ? q.error * mean_of(q.values) : q.error;
   if (q.values.size() < kFewestToJudge || !(spread > 0.0) || error <= kMostOfSpread * spread) return;
   warnings.push_back(path + ": [measurement_error] " + q.key + " = " + text_of(q.error) +
                      (q.relative ? ", " + with_digits(error, 3) + " " + q.unit + " of the mean" : "") +
-                     ": is more than a quarter of the spread of the " + q.what + ", whose standard deviation is " +
+                     ": is more than half of the spread of the " + q.what + ", whose standard deviation is " +
                      with_digits(spread, 3) + " " + q.unit + " (" + std::to_string(q.values.size()) +
-                     " values): the error that is added to simulated values then decides the comparison, not the " +
-                     "model; " +
+                     " values): the error that is added to simulated values may hide what the model " + "does wrong; " +
                      (q.relative ? "is it a share, such as 0.03 for 3 %?"
-                                 : "is it in m, such as 0.5 for 50 cm, and not the largest error?"));
+                                 : "is it in m, such as 0.3 for 30 cm, and not the largest error?"));
 }
 
 }  // namespace
@@ -136,11 +139,11 @@ void warn_of_diameters(const std::string& path, std::vector<double> ratios, std:
 }
 
 double doubted_height(const Raster<float>& heights) {
-  constexpr double kReach = 50.0;  // of a crane [m]
+  constexpr double kLow = 10.0, kReach = 50.0;  // of an excavator, whatever the relief, and of a crane [m]
   float low = std::numeric_limits<float>::infinity(), high = -low;
   for (const float z : heights.values)
     if (!std::isnan(z)) low = std::min(low, z), high = std::max(high, z);
-  return std::min<double>(kReach, high - low);
+  return std::clamp<double>(high - low, kLow, kReach);
 }
 
 void warn_of_releases(const std::string& path, const Campaign& campaign, std::vector<std::string>& warnings) {
@@ -156,7 +159,7 @@ void warn_of_releases(const std::string& path, const Campaign& campaign, std::ve
   if (!high.empty())
     warnings.push_back(path + ": " + share_of(high.size(), campaign.blocks.size()) +
                        " blocks are released higher above the ground than " + with_digits(most, 3) + " m" +
-                       (most < 50.0 ? ", the relief of the DEM" : "") + ": " + listed(high) +
+                       (most > 10.0 && most < 50.0 ? ", the relief of the DEM" : "") + ": " + listed(high) +
                        "; is release_height_m in m above the ground? A helicopter may drop them from there");
   if (!upwards.empty())
     warnings.push_back(path + ": " + share_of(upwards.size(), campaign.blocks.size()) +

@@ -22,8 +22,8 @@ void warn_of_diameters(const std::string& path, std::vector<double> ratios, std:
 /// Warns if the median block is larger or smaller than those that are measured in the field.
 void warn_of_median(const std::string& path, std::span<const MeasuredBlock> blocks, std::vector<std::string>& warnings);
 
-/// Height of a release above the ground from which it is doubted: 50 m, or the relief of the DEM where that is less
-/// [m].
+/// Height of a release above the ground from which it is doubted [m]: the relief of the DEM, at least 10 m and at most
+/// 50 m.
 double doubted_height(const Raster<float>& heights);
 /// Warns of releases that are high above the ground, or point upwards out of it.
 void warn_of_releases(const std::string& path, const Campaign& campaign, std::vector<std::string>& warnings);

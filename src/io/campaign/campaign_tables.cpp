@@ -243,7 +243,8 @@ class Tables {
 
 CsvTable table_of_campaign(const std::string& path, std::vector<std::string> known,
                            const std::vector<std::string>& required, std::vector<std::string>& warnings) {
-  const std::array<std::string, 5> remarks{"remark", "remarks", "note", "notes", "fid"};  // fid: of a layer in QGIS
+  const std::array<std::string, 7> remarks{"remark",  "remarks",  "note", "notes",
+                                           "comment", "comments", "fid"};  // fid: of a layer in QGIS
   known.insert(known.end(), remarks.begin(), remarks.end());
   CsvTable table(path, known, required);
   std::vector<std::string> unread;

@@ -10,7 +10,7 @@ namespace talus::io {
 namespace {
 
 constexpr int kHistogramWidth = 210, kHistogramHeight = 130, kHistogramMargin = 26;  // of a histogram [px]
-constexpr double kManyMissing = 0.1;                      // of the blocks: some stops are seldom found
+constexpr double kManyMissing = 0.1, kFewMissing = 3.0;   // of the blocks, and blocks: some stops are not found
 constexpr int kHistogramsInRow = 4, kHeadingHeight = 30;  // of a picture [px]
 
 std::string whole_percent(double share) {
@@ -92,7 +92,8 @@ std::string leaving_text(const LeavingTest& t) {
 std::string too_few_leave(const ScoredRows& scored) {
   const LeavingTest& t = scored.leaving_trials;
   const double more = static_cast<double>(t.missing) - t.expected;
-  if (!(t.p_if_all_left < kWrongSpread) || t.missing == t.blocks || more < kManyMissing * static_cast<double>(t.blocks))
+  if (!(t.p_if_all_left < kWrongSpread) || t.missing == t.blocks ||
+      more < std::max(kFewMissing, kManyMissing * static_cast<double>(t.blocks)))
     return {};
   return std::to_string(t.missing) + " of " + std::to_string(t.blocks) + " " + rows_in_words(scored.rows) +
          " blocks have no place of rest; if they left the DEM, the ground stops blocks too early (unsafe): by the "

@@ -21,8 +21,8 @@ Markup coverage_html(const std::vector<Coverage>& list);
 std::string leaving_sentence(const ScoredRows& scored);
 /// Words on the test alone: "by the model 8.4 of 50 blocks leave the DEM, none did: p 9e-05".
 std::string leaving_text(const LeavingTest& test);
-/// Says where the model lets too few blocks leave the DEM, by more than a tenth of them, if all without a place of rest
-/// left it. Empty elsewhere.
+/// Says where the model lets too few blocks leave the DEM, by a tenth of them and three at least, if all without a
+/// place of rest left it. Empty elsewhere.
 std::string too_few_leave(const ScoredRows& scored);
 /// Says where the middle run-out of the model is too short or too long. Empty where the share beyond it is that of a
 /// right model (95 %).

@@ -159,6 +159,16 @@ void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
   record.headline = error_of(of_large_groups(unseen.before.score), of_large_groups(unseen.after.score), clusters);
 }
 
+Reduction skill_of_ground(const DiagnosisRecord& record) {
+  return skill_of_model(record.errors.front().before, record.errors[record.unseen].before, record.clusters);
+}
+
+Reduction skill_of_found(const DiagnosisRecord& record) {
+  Reduction skill = skill_of_model(record.errors.front().after, record.errors[record.unseen].after, record.clusters);
+  if (choice_has_seen(record)) skill.interval.low = std::min(skill.interval.low, 0.0);
+  return skill;
+}
+
 std::vector<std::string> small_groups(const DiagnosisRecord& record) {
   std::vector<std::string> names;
   for (const GroupScore& group : record.errors[record.unseen].after.score.groups)

@@ -125,14 +125,17 @@ Markup predicts(const DiagnosisRecord& record) {
   ScoredRows rows = record.errors[record.unseen].after;
   const std::string side = runout_side(rows);
   if (!in_all_groups(record)) rows = in_large_groups(std::move(rows), record.clusters);
-  const Reduction skill = judged_skill(rows);
+  Reduction skill = judged_skill(rows);
+  const bool seen = choice_has_seen(record);
+  if (seen) skill.interval.low = std::min(skill.interval.low, 0.0);
   Markup text = std::isnan(skill.share)       ? "It cannot be said."_html
                 : !(skill.share > 0.0)        ? bold("No: do not take it for a map.")
                 : !(skill.interval.low > 0.0) ? bold("Not shown.")
                                               : bold("Yes.");
   if (const std::string sentence = skill_sentence(rows); !sentence.empty())
-    text += " On "_html + sentence + ". The climatology has no model: it takes what was measured of other blocks.";
-  if (!side.empty()) text += " "_html + bold(side) + ".";
+    text += (seen ? " The choice of the effect has seen these rows. On "_html : " On "_html) + sentence +
+            ". The climatology has no model: it takes what was measured of other blocks.";
+  if (!side.empty()) text += " "_html + bold(side) + "; one right model in twenty shows this by chance.";
   return text;
 }
 

@@ -113,10 +113,6 @@ std::string interval_text(const Interval& interval, double unit, int decimals) {
   return with_decimals(unit * interval.low, decimals) + " to " + with_decimals(unit * interval.high, decimals);
 }
 
-std::string reduction_in_words(const Reduction& reduction) {
-  return with_decimals(100.0 * reduction.share, 1) + " % (95 %: " + interval_text(reduction.interval, 100.0, 1) + " %)";
-}
-
 std::string unit_text(const std::string& unit) {
   return unit.empty() || unit == "1" ? "" : " " + unit;
 }

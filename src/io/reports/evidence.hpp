@@ -37,8 +37,6 @@ Json evidence_json(std::span<const BeforeAfter> errors, std::span<const std::uin
 
 /// "1.2 to 7.5": an interval times `unit`, with so many decimals.
 std::string interval_text(const Interval& interval, double unit, int decimals);
-/// "4.3 % (95 %: 1.2 to 7.5 %)".
-std::string reduction_in_words(const Reduction& reduction);
 /// " m/s"; empty for a number without a unit, whose unit is called "1" in places.
 std::string unit_text(const std::string& unit);
 /// A score with three decimals: "0.743"; "-" for NaN.

@@ -203,7 +203,7 @@ void check_ground(const CheckedRun& checked, Checks& checks) {
                       other ? "a warning of the run says that they differ" : "like cells and surface",
                       "A fitted ground makes up for what its DEM does not show."});
   }
-  if (const auto low_c = coefficient_note(run.deformation_coefficient, checked.fit.has_value())) {
+  if (const auto low_c = coefficient_note(run.deformation_coefficient, run.fitted_ground)) {
     const std::size_t end = low_c->find(". ");  // what is; then what to do
     checks.push_back({Mark::Look, "Deformation coefficient c", low_c->substr(0, end),
                       end == std::string::npos ? "" : low_c->substr(end + 2)});

@@ -120,6 +120,7 @@ RunFacts facts_of(const Json& json) {
   run.pieces = number_of(json, "pieces");
   run.effects = acting_in(json);
   run.settings = settings_of_record(json);
+  run.fitted_ground = has_fitted_ground(json);
   run.count_rotation = counts_rotation(json);
   for (const Json& one : json.value("inputs", Json::array()))
     run.inputs.push_back(

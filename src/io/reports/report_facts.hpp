@@ -65,6 +65,7 @@ struct RunFacts {
   RecordedGrid grid;
   std::vector<Screen> screens;  ///< in map coordinates [m]
   std::vector<StandingBarrier> barriers;
+  bool fitted_ground = false;        ///< a number of the ground is of a model that was fitted
   bool count_rotation = false;       ///< thresholds and hazard count the energy with rotation
   double pieces = 0.0;               ///< of broken blocks
   std::vector<std::string> effects;  ///< that acted

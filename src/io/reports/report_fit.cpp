@@ -85,7 +85,7 @@ void read_diagnosis(const Json& json, FitPart& part) {
 
 std::optional<FitPart> read_fit_part(const RunFacts& run) {
   const InputFile* const model = run.input(kFittedModel);
-  if (model == nullptr) return std::nullopt;
+  if (model == nullptr || !run.fitted_ground) return std::nullopt;
   FitPart part;
   part.file = model->path;
   part.skill = skill_in(run);
@@ -129,8 +129,8 @@ std::string FitPart::not_identifiable() const {
 std::string skill_of_fit_text(const Reduction& skill) {
   if (std::isnan(skill.share))
     return "its skill is not known, the file of the model does not give it (talus score does)";
-  if (!(skill.share > 0.0)) return "no skill: " + skill_in_words(skill);
-  return "skill " + skill_in_words(skill) + (skill.interval.low > 0.0 ? "" : ": it may have none");
+  if (!(skill.share > 0.0)) return "no skill: " + reduction_in_words(skill);
+  return "skill " + reduction_in_words(skill) + (skill.interval.low > 0.0 ? "" : ": it may have none");
 }
 
 Markup fit_html(const std::optional<FitPart>& part) {

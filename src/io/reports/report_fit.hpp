@@ -36,7 +36,8 @@ struct FitPart {
 /// "no skill: -11.0 % (95 %: -25.0 to 2.0 %)", or that it has some, may have none, or that it is not known.
 std::string skill_of_fit_text(const Reduction& skill);
 
-/// Nothing if the scenario includes no model. The records are read only if the model is the one of the run.
+/// Nothing if no number of the ground is of a fitted model. The records are read only if the model is the one of the
+/// run.
 std::optional<FitPart> read_fit_part(const RunFacts& run);
 Markup fit_html(const std::optional<FitPart>& part);
 

@@ -6,6 +6,7 @@
 #include "coverage_report.hpp"
 #include "deposit_report.hpp"
 #include "evidence.hpp"
+#include "io/scenario/fitted_on.hpp"
 #include "talus/base/text.hpp"
 #include "talus/fit/diagnose/diagnosis_rules.hpp"
 
@@ -300,9 +301,10 @@ Reduction judged_skill(const ScoredRows& s) {
   return skill;
 }
 
-Reduction skill_of_model(const ScoredRows& fitting, const ScoredRows& unseen) {
-  const Reduction skill = judged_skill(unseen);
-  return std::isnan(skill.share) ? judged_skill(fitting) : skill;
+Reduction skill_of_model(const ScoredRows& fitting, const ScoredRows& unseen, std::span<const std::uint32_t> clusters) {
+  if (fitting.deposits) return {};
+  const Reduction skill = judged_skill(in_large_groups(unseen, clusters));
+  return std::isnan(skill.share) ? judged_skill(in_large_groups(fitting, clusters)) : skill;
 }
 
 std::string tail_against_climatology(const ScoredRows& s) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "evidence.hpp"
+#include "io/scenario/fitted_on.hpp"
 #include "repeated_report.hpp"
 #include "talus/base/text.hpp"
 #include "talus/fit/score/joined_scores.hpp"

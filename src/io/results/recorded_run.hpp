@@ -9,6 +9,9 @@ bool is_of_profile(const Json& run);
 /// The plan that hazard_tally.gz of a run has: that of all its rounds together. Empty if the record has none.
 std::string plan_of_tally(const Json& run);
 
+/// Whether a number of the ground is of a model that was fitted.
+bool has_fitted_ground(const Json& run);
+
 /// Whether thresholds and hazard of a run count the energy with rotation, from its run.json. Earlier records: no.
 bool counts_rotation(const Json& run);
 

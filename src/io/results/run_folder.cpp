@@ -71,10 +71,7 @@ std::pair<int, int> series_of(std::string_view text) {
 
 std::optional<std::string> recorded_coefficient_note(const Json& run) {
   if (!run.contains("deformation_coefficient") || !run["deformation_coefficient"].is_number()) return std::nullopt;
-  const Json inputs = run.value("inputs", Json::array());
-  const bool fitted =
-      std::ranges::any_of(inputs, [](const Json& input) { return input.value("role", "") == kFittedModel; });
-  return coefficient_note(run["deformation_coefficient"].get<double>(), fitted);
+  return coefficient_note(run["deformation_coefficient"].get<double>(), has_fitted_ground(run));
 }
 
 /// That the figures hold only while the barriers of the run stand; nothing if none stood there.
@@ -163,7 +160,8 @@ std::optional<std::string> coefficient_note(double c, bool fitted) {
 }
 
 std::optional<std::string> coefficient_note(const LoadedScenario& loaded) {
-  const bool fitted = std::ranges::any_of(loaded.inputs, [](const InputFile& i) { return i.role == kFittedModel; });
+  const bool fitted =
+      std::ranges::any_of(loaded.settings, [](const Setting& s) { return s.key.starts_with(kFittedNumbers); });
   return coefficient_note(loaded.scenario.impact.deformation_coefficient, fitted);
 }
 

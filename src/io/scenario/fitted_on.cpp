@@ -19,16 +19,30 @@ constexpr Bounds kFittedDiameters{"fitted_diameters", "m", "of the blocks to whi
 constexpr Bounds kFittedSkill{"fitted_skill", "1", "share by which the error is below that of the climatology", -1e9,
                               1e9};
 
-/// [fit.zones]: the fitted keys of each ground.
-void read_numbers(FittedOn& fitted, TableReader zones) {
+bool has_ground(const ScenarioSpec& spec, const std::string& name) {
+  return spec.default_ground.name == name || std::ranges::count(spec.zones, name, &ZoneSpec::name) > 0;
+}
+
+bool is_number_of_ground(const TomlValue& item) {
+  return item.kind == TomlValue::Kind::Text &&
+         (item.text == "shape" ||
+          std::ranges::any_of(ground_fields(), [&](const auto& field) { return field.key == item.text; }));
+}
+
+/// [fit.zones]: the keys of each ground that are of the model. A name that no ground has would end its warnings.
+void read_numbers(ScenarioSpec& spec, TableReader zones) {
   if (zones.value() == nullptr) return;
   for (const auto& [name, value] : zones.value()->members) {
-    const auto is_text = [](const TomlValue& item) { return item.kind == TomlValue::Kind::Text; };
-    if (value.kind != TomlValue::Kind::List || !std::ranges::all_of(value.items, is_text)) {
-      zones.fault(name, value, "must be a list of keys, like [\"theta_scale\"]");
+    if (!has_ground(spec, name)) {
+      zones.fault(name, value,
+                  "must be a ground of this scenario: rename it here as in [ground.zones], or leave it out");
       continue;
     }
-    for (const TomlValue& item : value.items) fitted.numbers[name].push_back(item.text);
+    if (value.kind != TomlValue::Kind::List || !std::ranges::all_of(value.items, is_number_of_ground)) {
+      zones.fault(name, value, "must be a list of keys of a ground, like [\"theta_scale\"]");
+      continue;
+    }
+    for (const TomlValue& item : value.items) spec.fitted_on.numbers[name].push_back(item.text);
   }
 }
 
@@ -64,15 +78,15 @@ void read_fit(ScenarioSpec& spec, TableReader table, const std::filesystem::path
   const auto& fields = scenario_fields();
   const auto c = std::ranges::find(fields, "model.deformation_coefficient", [](const auto& f) { return f.key; });
   fitted.deformation_coefficient = table.number("deformation_coefficient", *c);
-  read_numbers(fitted, table.table("zones"));
+  read_numbers(spec, table.table("zones"));
   table.finish();
   spec.origins["fit"] = "scenario";
 }
 
-std::string skill_in_words(const Reduction& skill) {
+std::string reduction_in_words(const Reduction& reduction) {
   const auto tenths = [](double share) { return with_decimals(100.0 * share, 1); };
-  const Interval& interval = skill.interval;
-  return tenths(skill.share) + " %" +
+  const Interval& interval = reduction.interval;
+  return tenths(reduction.share) + " %" +
          (std::isnan(interval.low) ? "" : " (95 %: " + tenths(interval.low) + " to " + tenths(interval.high) + " %)");
 }
 
@@ -115,7 +129,7 @@ bool uses_fit(const ScenarioSpec& spec) {
 void warn_of_no_skill(const ScenarioSpec& spec, std::vector<std::string>& warnings) {
   const std::optional<Reduction>& skill = spec.fitted_on.skill;
   if (!skill || skill->share > 0.0 || !uses_fit(spec)) return;
-  warnings.push_back(spec.fitted_on.file.where + ": the fit has no skill: " + skill_in_words(*skill) +
+  warnings.push_back(spec.fitted_on.file.where + ": the fit has no skill: " + reduction_in_words(*skill) +
                      ": the measurements of its campaign, without any model, tell as well or better where its blocks "
                      "go: do not use it (unsafe); see the report of the fit beside it");
 }

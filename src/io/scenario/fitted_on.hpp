@@ -15,8 +15,8 @@ void read_fitted(TableReader& table, FittedOn& fitted);
 /// Reads [fit] of the scenario that a run has written: what is known of the fit of its ground.
 void read_fit(ScenarioSpec& spec, TableReader table, const std::filesystem::path& base);
 
-/// "-11.0 % (95 %: -25.0 to 2.0 %)".
-std::string skill_in_words(const Reduction& skill);
+/// "4.3 % (95 %: 1.2 to 7.5 %)"; the share alone where the interval is not known.
+std::string reduction_in_words(const Reduction& reduction);
 
 /// "[-0.11, -0.25, 0.02]": value and interval; without an interval the value alone.
 std::string skill_list(const Reduction& skill);

@@ -212,7 +212,7 @@ class Lines {
       if (is_of_fit(spec_, zone, key)) keys.push_back(key);
     if (!keys.empty())
       lines_.push_back(
-          {"fit.zones", toml_key(zone.name), texts(keys), "", spec_.origin("fit"), "fit.zones." + zone.name});
+          {"fit.zones", toml_key(zone.name), texts(keys), "", spec_.origin("fit"), kFittedNumbers + zone.name});
   }
 
   void ground() {

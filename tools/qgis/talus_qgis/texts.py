@@ -367,7 +367,7 @@ GERMAN = {
         "m: die Karten gelten für ein Objekt dieser Breite (und den Durchmesser des Blocks) an jedem Ort, sonst für die Zelle; "
         "auch die Breite von Linien ohne Feld width",
     "hazard_curves.tif: how often each energy is exceeded, a band per energy (0, 1, 2, 4, ... kJ and the thresholds; with "
-    "--width 0 and the thresholds)": "hazard_curves.tif: wie oft jede Energie überschritten wird, ein Band pro Energie",
+    "--width: 0 and the thresholds)": "hazard_curves.tif: wie oft jede Energie überschritten wird, ein Band pro Energie",
     "replace the hazard maps that are there": "die vorhandenen Gefahrenkarten ersetzen",
     "folder of results that talus run has written, with screens": "Ordner eines Laufs mit Nachweislinien",
     "id of the line at which the barrier stands; the only one of the run where it is not given":

@@ -18,6 +18,8 @@ struct Setting {
 
 /// Role of the model that a scenario includes: a ground that talus calibrate or diagnose has fitted.
 inline constexpr const char* kFittedModel = "include";
+/// Beginning of the settings that list which numbers of a ground are of that model.
+inline constexpr const char* kFittedNumbers = "fit.zones.";
 
 /// A file that was read.
 struct InputFile {

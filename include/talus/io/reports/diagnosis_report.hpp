@@ -40,6 +40,11 @@ struct DiagnosisRecord : FitRecord {
 /// false.
 void open_holdout(const Campaign& campaign, DiagnosisRecord& record);
 
+/// Skill of a model of the diagnosis, as `skill_of_model`. Where the choice of the effect has seen the unseen rows, the
+/// lower end of the interval of what was found is 0 at most.
+Reduction skill_of_ground(const DiagnosisRecord& record);
+Reduction skill_of_found(const DiagnosisRecord& record);
+
 /// Whether the unseen rows have taken part in the choice of an effect, though not in the fits: quick folds.
 bool choice_has_seen(const DiagnosisRecord& record);
 

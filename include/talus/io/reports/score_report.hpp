@@ -91,8 +91,12 @@ std::string skill_sentence(const ScoredRows& scored);
 /// interval is less what fitting gains on them without any skill. NaN where it cannot be told.
 Reduction judged_skill(const ScoredRows& scored);
 
-/// The skill of a fitted model: on rows that it has not seen, or, where these tell nothing, on those that were fitted.
-Reduction skill_of_model(const ScoredRows& fitting, const ScoredRows& unseen);
+/// The skill of a fitted model in groups of ten rows and more, as the headline of a diagnosis: on rows that it has not
+/// seen, or, where these tell nothing, on those that were fitted. NaN of mapped deposits: their climatology, blocks
+/// anywhere on the mapped ground, is no measure of a map.
+///
+/// @param clusters  of the blocks (`clusters_of`)
+Reduction skill_of_model(const ScoredRows& fitting, const ScoredRows& unseen, std::span<const std::uint32_t> clusters);
 
 /// The same without the groups of fewer than ten rows: score, climatology and skill. Nothing else of it changes.
 ScoredRows in_large_groups(ScoredRows scored, std::span<const std::uint32_t> clusters);
