@@ -204,7 +204,8 @@ std::string model_text(const Model& model, const LoadedCampaign& loaded, const s
   text += "fitted_diameters = [" + text_of(std::floor(1e3 * sizes.low) / 1e3) + ", " +
           text_of(std::ceil(1e3 * sizes.high) / 1e3) + "]  # m\n";
   if (std::isfinite(skill.share))
-    text += "fitted_skill = " + skill_list(skill) + "  # share by which the error is below the climatology's; its interval\n";
+    text += "fitted_skill = " + skill_list(skill) +
+            "  # share by which the error is below the climatology's; its interval\n";
   for (std::size_t i = 0; i < loaded.campaign.zone_names.size(); ++i) {
     text += "\n[ground.zones." + toml_key(loaded.campaign.zone_names[i]) + "]\n";
     text += "preset = " + toml_text(std::string(kDefaultPreset)) + "\n";
