@@ -93,8 +93,9 @@ class Calibrate(Sites):
                 for key in ("before", "after", "reduction", "ci95", "climatology"):
                     self.assertEqual(both["sites"][place]["error"][rows][key], alone["error"][rows][key])
 
-            def model(out):
-                return [line for line in self.read_text(f"{out}/fitted.toml").splitlines() if not line.startswith("#")]
+            def model(out):  # the numbers that were free, by which the skill is lowered on fitted rows, are not counted by site
+                lines = self.read_text(f"{out}/fitted.toml").splitlines()
+                return [line.split(",")[0] if line.startswith("fitted_skill") else line for line in lines if not line.startswith("#")]
             self.assertEqual(model(f"both/{name}"), model(f"{name}-alone"))
 
     def test_wrong_input(self):

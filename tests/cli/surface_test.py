@@ -145,6 +145,8 @@ class WhatARunKnowsOfTheFit(RunCase):
             self.run_scenario("out", "--overwrite")
             warnings = [w for w in self.record()["warnings"] if "has no skill" in w]
             self.assertEqual(len(warnings), said is not None, warnings)
+            hazard = self.run_well("hazard", self.path("out")).stderr  # says it again
+            self.assertEqual("has no skill" in hazard, said is not None, hazard)
             self.assertTrue(said is None or said in warnings[0], warnings)
         for wrong in ("0.1", "[0.1, 0.2]", "[0.1, 0.2, 0.3]", '["no"]'):
             self.write("m.toml", f"fitted_skill = {wrong}\n[ground.zones.default]\nEn50 = 7\n")

@@ -367,6 +367,14 @@ TEST_F(Campaigns, AModelReadsBackTheSame) {
     EXPECT_NEAR(back.grounds[z].tan_phi, model.grounds[z].tan_phi, 1e-15);
     EXPECT_EQ(back.grounds[z].shape_max, model.grounds[z].shape_max);
   }
+  Model start = model;  // a zone that no block touched is no fitted one
+  start.grounds[0] = model_of_preset(loaded.campaign, "upper-talus-3d").grounds[0];
+  const std::string text_of_start = model_text(start, loaded, "");
+  EXPECT_NE(text_of_start.find("[ground.zones.default]\npreset = \"upper-talus-3d\"\n# not fitted: as the preset\n\n["),
+            std::string::npos)
+      << text_of_start;
+  EXPECT_EQ(read_model(write_text("s.toml", text_of_start), loaded.campaign).grounds[0].theta_scale,
+            start.grounds[0].theta_scale);
   EXPECT_EQ(back.impact.deformation_coefficient, 0.3);
   EXPECT_EQ(back.impact.roughness, Roughness::Resample);
   const auto faulty = [&](const std::string& text, const std::vector<std::string>& parts) {

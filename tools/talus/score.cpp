@@ -56,6 +56,10 @@ talus::Model model_of(const ScoreOptions& options, const talus::Campaign& campai
     throw talus::InputError("score: give the model, either --parameters fitted.toml, or --preset " +
                             std::string(talus::kDefaultPreset) +
                             " (or another that talus presets lists) for a ground that nobody has fitted");
+  if (!options.preset.empty() && talus::is_of_plane(talus::find_preset(options.preset)))
+    warnings.push_back("--preset " + options.preset +
+                       ": is of the 2D model, psi_scale = 0: blocks are not turned sideways, so that what was measured "
+                       "across the slope scores too badly: take a preset whose name ends in -3d");
   return options.preset.empty() ? talus::io::read_model(options.parameters, campaign, &warnings)
                                 : talus::model_of_preset(campaign, options.preset);
 }

@@ -210,7 +210,8 @@ std::string model_text(const Model& model, const LoadedCampaign& loaded, const s
     text += "\n[ground.zones." + toml_key(loaded.campaign.zone_names[i]) + "]\n";
     text += "preset = " + toml_text(std::string(kDefaultPreset)) + "\n";
     if (!loaded.zone_codes[i].empty()) text += "code = " + loaded.zone_codes[i] + "  # in a raster of zones\n";
-    text += ground_text(model.grounds[i]);
+    const std::string numbers = ground_text(model.grounds[i]);
+    text += numbers == ground_text(find_preset(kDefaultPreset).ground) ? "# not fitted: as the preset\n" : numbers;
   }
   text += "\n[model]\ndeformation_coefficient = " + text_of(model.impact.deformation_coefficient) + "\n";
   text += std::string("roughness = \"") + (model.impact.roughness == Roughness::Clamp ? "clamp" : "resample") + "\"\n";

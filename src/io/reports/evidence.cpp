@@ -128,7 +128,8 @@ std::string gain_text(double gain, const Interval& interval) {
 
 std::string judgement_markdown(const BeforeAfter& e, const std::string& ranks) {
   std::string text;
-  for (const std::string& sentence : {skill_sentence(e.after), tail_before_after(e), leaving_sentence(e.after)})
+  for (const std::string& sentence :
+       {skill_sentence(e.after), runout_side(e.after), tail_before_after(e), leaving_sentence(e.after)})
     if (!sentence.empty()) text += sentence + (sentence.ends_with('.') ? "" : ".") + "\n\n";
   for (const std::string& sentence : deposit_sentences(e.after)) text += sentence + ".\n\n";
   if (e.after.coverage.empty()) return text;

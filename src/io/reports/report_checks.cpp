@@ -203,6 +203,9 @@ void check_ground(const CheckedRun& checked, Checks& checks) {
                       other ? "a warning of the run says that they differ" : "like cells and surface",
                       "A fitted ground makes up for what its DEM does not show."});
   }
+  if (warned_of(run, "was fitted with the deformation coefficient"))
+    checks.push_back({Mark::Act, "c of the fit and c of the run", "a warning of the run says that they differ",
+                      "A fitted ground holds for the c of its fit alone: fit it again with this c."});
   if (const auto low_c = coefficient_note(run.deformation_coefficient, run.fitted_ground)) {
     const std::size_t end = low_c->find(". ");  // what is; then what to do
     checks.push_back({Mark::Look, "Deformation coefficient c", low_c->substr(0, end),

@@ -128,7 +128,8 @@ std::string FitPart::not_identifiable() const {
 
 std::string skill_of_fit_text(const Reduction& skill) {
   if (std::isnan(skill.share))
-    return "its skill is not known, the file of the model does not give it (talus score does)";
+    return "its skill is not known: the file of the model gives none (that of mapped deposits, or of an earlier "
+           "version)";
   if (!(skill.share > 0.0)) return "no skill: " + reduction_in_words(skill);
   return "skill " + reduction_in_words(skill) + (skill.interval.low > 0.0 ? "" : ": it may have none");
 }

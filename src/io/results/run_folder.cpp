@@ -8,6 +8,7 @@
 #include "acting_record.hpp"
 #include "io/files/json.hpp"
 #include "io/gdal/regular_file.hpp"
+#include "io/scenario/fitted_on.hpp"
 #include "recorded_run.hpp"
 #include "recorded_screens.hpp"
 #include "talus/base/error.hpp"
@@ -35,7 +36,7 @@ double setting_of(const Json& json, const std::string& key) {
 /// Whether a warning of a run holds for all who use its results.
 bool holds_for_all(const std::string& warning) {
   return warning.starts_with(kSizeWarning) || warning.starts_with(kGuessWarning) || is_of_frequencies(warning) ||
-         is_of_cut_sources(warning) || says_maps_end_early(warning);
+         is_of_cut_sources(warning) || says_maps_end_early(warning) || says_fit_does_not_hold(warning);
 }
 
 /// Those warnings of the run. With another weighting those about frequencies are the ones of that, and those with

@@ -19,6 +19,9 @@ constexpr Bounds kFittedDiameters{"fitted_diameters", "m", "of the blocks to whi
 constexpr Bounds kFittedSkill{"fitted_skill", "1", "share by which the error is below that of the climatology", -1e9,
                               1e9};
 
+constexpr const char *kNoSkill = "the fit has no skill", *kOtherTerrain = "was fitted on",
+                     *kOtherCoefficient = "was fitted with the deformation coefficient";
+
 bool has_ground(const ScenarioSpec& spec, const std::string& name) {
   return spec.default_ground.name == name || std::ranges::count(spec.zones, name, &ZoneSpec::name) > 0;
 }
@@ -100,12 +103,12 @@ void warn_of_other_terrain(const ScenarioSpec& spec, const Grid& grid, SurfaceKi
                            const std::string& used, const std::string& remedy, std::vector<std::string>& warnings) {
   const FittedOn& on = spec.fitted_on;
   if (on.surface && *on.surface != kind)
-    warnings.push_back(where + ": was fitted on a " + std::string(name_of(*on.surface)) + " surface, and " + used +
-                       " on a " + std::string(name_of(kind)) + " one" + remedy);
+    warnings.push_back(where + ": " + kOtherTerrain + " a " + std::string(name_of(*on.surface)) + " surface, and " +
+                       used + " on a " + std::string(name_of(kind)) + " one" + remedy);
   if (!on.cell) return;
   const double fitted = *on.cell, here = grid.cell_x;
   if (std::max(fitted, here) < kOtherCells * std::min(fitted, here)) return;
-  warnings.push_back(where + ": was fitted on cells of " + with_digits(fitted, 3) + " m, and " + used +
+  warnings.push_back(where + ": " + kOtherTerrain + " cells of " + with_digits(fitted, 3) + " m, and " + used +
                      " on cells of " + with_digits(here, 3) +
                      " m: where the ground is uneven, coarser cells carry the same blocks " +
                      "farther: take a DEM of like cells, or fit again");
@@ -126,10 +129,15 @@ bool uses_fit(const ScenarioSpec& spec) {
   return of_fit(spec.default_ground) || std::ranges::any_of(spec.zones, of_fit);
 }
 
+bool says_fit_does_not_hold(const std::string& warning) {
+  return std::ranges::any_of(std::initializer_list<const char*>{kNoSkill, kOtherTerrain, kOtherCoefficient},
+                             [&](const char* words) { return warning.find(words) != warning.npos; });
+}
+
 void warn_of_no_skill(const ScenarioSpec& spec, std::vector<std::string>& warnings) {
   const std::optional<Reduction>& skill = spec.fitted_on.skill;
   if (!skill || skill->share > 0.0 || !uses_fit(spec)) return;
-  warnings.push_back(spec.fitted_on.file.where + ": the fit has no skill: " + reduction_in_words(*skill) +
+  warnings.push_back(spec.fitted_on.file.where + ": " + kNoSkill + ": " + reduction_in_words(*skill) +
                      ": the measurements of its campaign, without any model, tell as well or better where its blocks "
                      "go: do not use it (unsafe); see the report of the fit beside it");
 }
@@ -138,9 +146,8 @@ void warn_of_other_coefficient(const ScenarioSpec& spec, std::vector<std::string
   const std::optional<double>& fitted = spec.fitted_on.deformation_coefficient;
   const double here = spec.values.impact.deformation_coefficient;
   if (!fitted || here == *fitted || !uses_fit(spec)) return;
-  warnings.push_back(spec.fitted_on.file.where +
-                     ": was fitted with the deformation coefficient c = " + text_of(*fitted) + ", and this run takes " +
-                     text_of(here) + " (" + spec.origin("model.deformation_coefficient") +
+  warnings.push_back(spec.fitted_on.file.where + ": " + kOtherCoefficient + " c = " + text_of(*fitted) +
+                     ", and this run takes " + text_of(here) + " (" + spec.origin("model.deformation_coefficient") +
                      "): a fitted ground holds only for the c of its fit: fit it again with this c, in [model] of the "
                      "model from which the fit starts (--parameters)");
 }

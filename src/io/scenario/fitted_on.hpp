@@ -36,6 +36,9 @@ bool is_of_fit(const ScenarioSpec& spec, const ZoneSpec& zone, const std::string
 /// Whether a ground of the scenario has such a number.
 bool uses_fit(const ScenarioSpec& spec);
 
+/// Whether a warning says that the fit of the ground does not hold in this run: one of the three here.
+bool says_fit_does_not_hold(const std::string& warning);
+
 /// Warns where the fit of the ground has no skill.
 void warn_of_no_skill(const ScenarioSpec& spec, std::vector<std::string>& warnings);
 

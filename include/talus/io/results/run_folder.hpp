@@ -19,9 +19,9 @@ struct ResultsUse {
 };
 
 /// Notes for everyone who uses the results of a run, from its run.json:
-///   that the sizes of blocks or the ground are no fitted ones, that sources release nothing or overlap;
-///   that its status is not complete; `later_version_note`; `coefficient_note`;
-///   that the figures hold only with the barriers and the forest of the run, and on a wet day.
+///   that the sizes of blocks or the ground are no fitted ones, that the fit does not hold, that sources release
+///   nothing or overlap; that its status is not complete; `later_version_note`; `coefficient_note`; that the figures
+///   hold only with the barriers and the forest of the run, and on a wet day.
 /// None if there is no run.json that can be read. Throws InputError if it is none of a run.
 std::vector<std::string> notes_of_run(const std::filesystem::path& folder, const ResultsUse& use);
 
