@@ -312,7 +312,7 @@ class Content(Report):
                  ([0.1], True, "look", "skill 10.0 %: it may have none", "may be no better"),
                  ([0.2, 0.1, 0.3], False, "look", "1 of 1 fitted numbers is not identifiable", "one of many"),
                  ([0.2, 0.1, 0.3], True, "fine", "skill 20.0 % (95 %: 10.0 to 30.0 %)", "its slope"),
-                 (None, True, "look", "its skill is not known", "talus score"))
+                 (None, True, "look", "its skill is not known", "or of an earlier version"))
         for i, (skill, known, mark, found, _) in enumerate(cases):
             self.write("fit/fitted.toml", (f"fitted_skill = {skill}\n" if skill else "") + "fitted_cell = 5\n[ground.zones.default]\nEn50 = 13\n")
             self.write("fit/calibration.json", json.dumps({
