@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "coverage_report.hpp"
 #include "evidence.hpp"
 #include "talus/base/text.hpp"
 
