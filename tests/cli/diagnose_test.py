@@ -95,11 +95,15 @@ class Loop(Case):
         self.assertNotRegex(page, "https?:")  # self-contained
         # `score` reads the model that was found.
         self.run_well("score", campaign, "--parameters", f"{out}/with_effect.toml", "-q")
+        left = {}
         for name, model in (("fitted", 1), ("with_effect", 2)):  # over the better of two climatologies, of which this is one
             with open(f"{out}/{name}.toml", "rb") as file:
                 skill, low, high = tomllib.load(file)["fitted_skill"]
             over_one = 1 - found["evidence"][model]["holdout"]["error"] / climatology["holdout"]["error"]
             self.assertTrue(low <= skill <= high and skill <= over_one + 1e-3, (name, skill, over_one))
+            left[model] = 1 - skill
+        errors = [found["evidence"][model]["holdout"]["error"] for model in (1, 2)]
+        self.assertAlmostEqual(left[1] / left[2], errors[0] / errors[1], delta=1e-3)  # over the same climatology
         return found
 
 

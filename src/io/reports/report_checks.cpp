@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "io/scenario/fitted_on.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/vectors.hpp"
@@ -197,13 +198,13 @@ void check_ground(const CheckedRun& checked, Checks& checks) {
     checks.push_back(
         {Mark::Look, "Ground from presets", joined(presets),
          "A first guess from other slopes. Compare with silent witnesses: where do old blocks lie? Vary it."});
-  if (checked.fit || warned_of(run, "was fitted on")) {
-    const bool other = warned_of(run, "was fitted on");
+  if (checked.fit || warned_of(run, kOtherTerrain)) {
+    const bool other = warned_of(run, kOtherTerrain);
     checks.push_back({other ? Mark::Act : Mark::Fine, "DEM of the fit and DEM of the run",
                       other ? "a warning of the run says that they differ" : "like cells and surface",
                       "A fitted ground makes up for what its DEM does not show."});
   }
-  if (warned_of(run, "was fitted with the deformation coefficient"))
+  if (warned_of(run, kOtherCoefficient))
     checks.push_back({Mark::Act, "c of the fit and c of the run", "a warning of the run says that they differ",
                       "A fitted ground holds for the c of its fit alone: fit it again with this c."});
   if (const auto low_c = coefficient_note(run.deformation_coefficient, run.fitted_ground)) {

@@ -43,8 +43,7 @@ Reduction skill_in(const RunFacts& run) {
   for (const RecordedSetting* setting : run.settings_of("fit.fitted_skill")) {
     const Json list = Json::parse(setting->value, nullptr, false);
     if (!list.is_array() || !std::ranges::all_of(list, [](const Json& one) { return one.is_number(); })) continue;
-    if (list.size() == 1) return {list[0].get<double>(), {}};
-    if (list.size() == 3) return {list[0].get<double>(), {list[1].get<double>(), list[2].get<double>()}};
+    if (const auto skill = skill_of_list(list.get<std::vector<double>>())) return *skill;
   }
   return {};
 }
@@ -107,14 +106,11 @@ std::optional<FitPart> read_fit_part(const RunFacts& run) {
     }
     if (!found) part.note = "There is no record of a fit beside it (calibration.json, diagnosis.json).";
   } catch (const InputError& error) {
-    part = {.file = part.file,
-            .campaign = {},
-            .note = "Its record cannot be read: " + shortened(error.what(), 300),
-            .parameters = {},
-            .errors = {},
-            .effect = {},
-            .warnings = {},
-            .skill = part.skill};
+    FitPart unread;
+    unread.file = part.file;
+    unread.skill = part.skill;
+    unread.note = "Its record cannot be read: " + shortened(error.what(), 300);
+    return unread;
   }
   return part;
 }

@@ -19,8 +19,7 @@ constexpr Bounds kFittedDiameters{"fitted_diameters", "m", "of the blocks to whi
 constexpr Bounds kFittedSkill{"fitted_skill", "1", "share by which the error is below that of the climatology", -1e9,
                               1e9};
 
-constexpr const char *kNoSkill = "the fit has no skill", *kOtherTerrain = "was fitted on",
-                     *kOtherCoefficient = "was fitted with the deformation coefficient";
+constexpr const char* kNoSkill = "the fit has no skill";
 
 bool has_ground(const ScenarioSpec& spec, const std::string& name) {
   return spec.default_ground.name == name || std::ranges::count(spec.zones, name, &ZoneSpec::name) > 0;
@@ -56,13 +55,8 @@ void read_fitted(TableReader& table, FittedOn& fitted) {
   fitted.diameters = table.range("fitted_diameters", kFittedDiameters);
   const auto skill = table.numbers("fitted_skill", kFittedSkill);
   if (!skill) return;
-  const std::vector<double>& s = *skill;
-  if (s.size() == 1)
-    fitted.skill = {s[0], {}};
-  else if (s.size() == 3 && s[1] <= s[0] && s[0] <= s[2])
-    fitted.skill = {s[0], {s[1], s[2]}};
-  else
-    table.fault("fitted_skill", *table.find("fitted_skill"), "must be [value, low, high], or [value]");
+  fitted.skill = skill_of_list(*skill);
+  if (!fitted.skill) table.fault("fitted_skill", *table.find("fitted_skill"), "must be [value, low, high], or [value]");
 }
 
 void read_fit(ScenarioSpec& spec, TableReader table, const std::filesystem::path& base) {
@@ -91,6 +85,12 @@ std::string reduction_in_words(const Reduction& reduction) {
   const Interval& interval = reduction.interval;
   return tenths(reduction.share) + " %" +
          (std::isnan(interval.low) ? "" : " (95 %: " + tenths(interval.low) + " to " + tenths(interval.high) + " %)");
+}
+
+std::optional<Reduction> skill_of_list(std::span<const double> list) {
+  if (list.size() == 1) return Reduction{list[0], {}};
+  if (list.size() == 3 && list[1] <= list[0] && list[0] <= list[2]) return Reduction{list[0], {list[1], list[2]}};
+  return std::nullopt;
 }
 
 std::string skill_list(const Reduction& skill) {

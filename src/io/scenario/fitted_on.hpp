@@ -1,5 +1,7 @@
 #pragma once
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,9 @@ void read_fit(ScenarioSpec& spec, TableReader table, const std::filesystem::path
 /// "4.3 % (95 %: 1.2 to 7.5 %)"; the share alone where the interval is not known.
 std::string reduction_in_words(const Reduction& reduction);
 
+/// The skill of such a list: [value], or [value, low, high] in this order. None for another list.
+std::optional<Reduction> skill_of_list(std::span<const double> list);
+
 /// "[-0.11, -0.25, 0.02]": value and interval; without an interval the value alone.
 std::string skill_list(const Reduction& skill);
 
@@ -35,6 +40,10 @@ bool is_of_fit(const ScenarioSpec& spec, const ZoneSpec& zone, const std::string
 
 /// Whether a ground of the scenario has such a number.
 bool uses_fit(const ScenarioSpec& spec);
+
+/// Words of two warnings, by which the report finds them.
+inline constexpr const char* kOtherTerrain = "was fitted on";
+inline constexpr const char* kOtherCoefficient = "was fitted with the deformation coefficient";
 
 /// Whether a warning says that the fit of the ground does not hold in this run: one of the three here.
 bool says_fit_does_not_hold(const std::string& warning);

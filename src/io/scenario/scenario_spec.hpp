@@ -72,7 +72,7 @@ struct ProfileSpec {
 struct FittedOn {
   NamedFile file;                                           ///< of the model: included, or that of [fit]
   std::string sha256;                                       ///< of the file when it was included
-  std::map<std::string, std::vector<std::string>> numbers;  ///< of [fit.zones]: the keys of each ground that are fitted
+  std::map<std::string, std::vector<std::string>> numbers;  ///< [fit.zones]: keys of each ground, of the model
   std::optional<SurfaceKind> surface;
   std::optional<double> cell;                     ///< side of the cells of the DEM [m]
   std::optional<Range> diameters;                 ///< of the blocks [m]

@@ -188,7 +188,7 @@ class Lines {
     }
   }
 
-  /// What is known of the fit of the ground, so that a run that repeats this one says of it what this one says.
+  /// Facts on the fit of the ground, [fit]. With them a run of the written scenario gives the same warnings.
   void fit() {
     const FittedOn& fitted = spec_.fitted_on;
     if (fitted.file.path.empty()) return;

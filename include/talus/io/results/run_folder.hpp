@@ -33,7 +33,7 @@ std::optional<std::string> later_version_note(const std::string& written);
 /// docs/barrier.md, "The value of c".
 /// @param fitted  the ground was fitted: another c needs another fit
 std::optional<std::string> coefficient_note(double c, bool fitted);
-/// The same of a run, whose inputs tell whether its ground was fitted.
+/// This line for a run. Its settings tell whether the ground was fitted.
 std::optional<std::string> coefficient_note(const LoadedScenario& loaded);
 
 /// "2 barriers stood in the run and caught 3335 blocks"; "blocks and pieces" if blocks broke.
