@@ -275,6 +275,19 @@ class Forests(Case):
         self.run_well("run", self.write("plain.toml", HEAD.replace("[effects.forest-stems]\n", "")), "-o", self.path("plain"))
         self.assertEqual(results(self.path("west")), results(self.path("plain")))
 
+    def test_a_hole_at_the_edge_of_a_stand_is_a_gap(self):
+        """A lane of 10 x 25 m (10 cells) in a stand of 50 x 50 m (100 cells), as a hole that shares an edge with the outer
+        ring: an invalid polygon."""
+        x, y = WEST + 100.0, NORTH - 200.0
+        rings = [[(0, 0), (50, 0), (50, 50), (0, 50)], [(20, 0), (30, 0), (30, 25), (20, 25)]]
+        text = ", ".join("(" + ", ".join(f"{x + e} {y + n}" for e, n in [*r, r[0]]) + ")" for r in rings)
+        self.write("stand.csv", f'wkt,density\n"POLYGON ({text})",900\n')
+        told = self.check('density = 300\nfile = "stand.csv"\n')
+        self.assertIn("forest-stems acts in 90 of 3600 cells (0.225 ha): density = 300 1/ha", told)
+        self.assertIn("no field is read; there are", told)
+        self.assertIn("the field 'density' is not read: density of [effects.forest-stems] is that of the scenario", told)
+        self.assertIn("gdal_rasterize -a density", told)
+
     def test_a_stand_is_counted_once(self):
         drag = "[effects.vegetation-drag]\ncoefficient = 100\n"
         self.trees("trees.csv", [(100.0, 150.0)])

@@ -263,6 +263,16 @@ TEST_F(Sources, AnInvalidPolygonIsMendedWithAWarning) {  // a bow tie: x = 5 and
                      {"s.gpkg: feature 1", "polygon is invalid", "no area is left when it is mended: draw it anew"});
 }
 
+TEST_F(Sources, AHoleOfAnInvalidPolygonStaysAHole) {  // 4 x 4 cells
+  const std::string square = "POLYGON((0 0,40 0,40 40,0 40,0 0),";
+  const std::size_t lane = read({{"POLYGON((0 0,10 0,10 20,20 20,20 0,40 0,40 40,0 40,0 0))"}}).cells.size();
+  EXPECT_EQ(lane, 14U);  // the same gap of 1 x 2 cells, drawn in the outer ring
+  EXPECT_EQ(read({{square + "(10 0,20 0,20 20,10 20,10 0))"}}).cells.size(), lane) << "shares an edge";
+  EXPECT_EQ(read({{square + "(10 -20,20 -20,20 20,10 20,10 -20))"}}).cells.size(), lane) << "reaches beyond";
+  EXPECT_EQ(read({{square + "(10 10,30 10,30 20,10 20,10 10),(20 10,30 10,30 30,20 30,20 10))"}}).cells.size(), 13U)
+      << "overlaps another: 2 + 2 - 1 cells";
+}
+
 TEST_F(Sources, CellsWithoutTerrainAreLeftOut) {
   terrain_.heights.at(1, 0) = std::numeric_limits<float>::quiet_NaN();
   const SourceLayer layer = read({{"POLYGON((0 0,30 0,30 10,0 10,0 0))"}, {"POINT(15 5)"}});

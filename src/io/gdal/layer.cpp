@@ -327,7 +327,9 @@ void Layer::add_valid(const OGRPolygon& polygon, Parts& parts, const std::string
     return;
   }
   const std::string reason = fault_on_map(polygon);
-  const std::unique_ptr<OGRGeometry> mended(polygon.MakeValid());
+  CPLStringList rings;  // the default, by lines, fills a hole that shares an edge with the outer ring
+  rings.SetNameValue("METHOD", "STRUCTURE");
+  const std::unique_ptr<OGRGeometry> mended(polygon.MakeValid(rings.List()));
   const std::size_t before = parts.polygons.size();
   const auto keep = [&](const auto& self, const OGRGeometry& geometry) -> void {
     const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());

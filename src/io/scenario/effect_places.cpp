@@ -13,9 +13,27 @@ namespace talus::io {
 
 namespace {
 
+/// Tells which fields the polygons of an effect have. Warns of those that are called like a number of the effect: the
+/// polygons say only where it acts.
+void tell_fields(const EffectEntry& entry, const std::string& path, const std::vector<std::string>& fields,
+                 LoadedScenario& out) {
+  out.notes.push_back(fields_note(path, {}, 0, fields));
+  for (const EffectField& number : entry.fields()) {
+    const std::string key(entry.key_of(number));
+    if (std::ranges::find(fields, key) == fields.end()) continue;
+    std::string way;
+    if (entry.name == "forest-stems" && (key == "density" || key == "diameter"))
+      way = "; for other stands in other polygons make a raster of it (gdal_rasterize -a " + key + ") and give " + key +
+            " its name";
+    out.warnings.push_back(path + ": the field '" + key + "' is not read: " + key + " of [effects." +
+                           std::string(entry.name) + "] is that of the scenario in all polygons" + way);
+  }
+}
+
 /// The cells whose centres the polygons of a file cover, as zones of ground are read.
-Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path, const Terrain& terrain,
+Raster<std::uint8_t> read_mask(const EffectEntry& entry, const std::string& path, const Terrain& terrain,
                                LoadedScenario& out) {
+  const std::string name(entry.name);
   const Grid& grid = terrain.heights.grid;
   Raster<std::uint8_t> mask(grid, 0, terrain.heights.values.memory());
   Layer layer("effects." + name, path, terrain);
@@ -27,6 +45,7 @@ Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path,
         std::to_string(feature->GetFID()), polygons, [] { return std::uint8_t{1}; }, mask);
   });
   idle.warn(mask, out.warnings);
+  tell_fields(entry, path, layer.field_names(), out);
   layer.tell(out);
   return mask;
 }
@@ -60,7 +79,7 @@ void load_effect_places(const ScenarioSpec& spec, const Terrain& terrain, Scenar
       for (std::size_t i = 0; i < parts.zone_names.size(); ++i)
         area->zones[i] = std::count(effect.zones.begin(), effect.zones.end(), parts.zone_names[i]) > 0 ? 1 : 0;
     }
-    if (!effect.file.path.empty()) area->mask = read_mask(name, effect.file.path, terrain, out);
+    if (!effect.file.path.empty()) area->mask = read_mask(entry, effect.file.path, terrain, out);
     if (!effect.maps.empty()) load_forest(effect.maps, terrain, parts, out);
   }
 }

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "talus/base/text.hpp"
+#include "talus/physics/effects/registry.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
 #include "talus/simulate/scenario/stand_figures.hpp"
 
@@ -40,7 +41,20 @@ std::string thick_text(double basal_area) {
          "diameter a girth, the density per another area?";
 }
 
+/// Warns where the effects are off without which stems do not act as a forest does.
+void warn_of_stems_alone(const Effects& effects, std::vector<std::string>& warnings) {
+  if (!find_effect("block-mass")->acts(effects))
+    warnings.push_back(std::string(kForest) +
+                       "holds large blocks best without [effects.block-mass] preset = \"measured\", forests hold small "
+                       "ones (unsafe for large ones): see docs/effects.md");
+  if (!find_effect("rest-in-roughness")->acts(effects))
+    warnings.push_back(std::string(kForest) +
+                       "keeps few blocks without [effects.rest-in-roughness]: one that a stem has stopped moves on "
+                       "where the slope is steeper than phi, see docs/effects.md");
+}
+
 void warn_of_forest(const Scenario& scenario, std::vector<std::string>& warnings) {
+  warn_of_stems_alone(scenario.effects, warnings);
   const ForestStems& forest = scenario.effects.forest_stems;
   double basal_area = 0.0;
   if (forest.lists_trees()) {

@@ -13,9 +13,12 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// 10 x 10 cells of 20 m: four hectares.
+/// 10 x 10 cells of 20 m: four hectares. With the effects that a forest needs.
 Scenario on_four_hectares() {
-  return test::scenario_on(Raster<float>(test::grid_of(10, 10, 20.0, 20.0), 100.0F));
+  Scenario s = test::scenario_on(Raster<float>(test::grid_of(10, 10, 20.0, 20.0), 100.0F));
+  s.effects.block_mass.roughness = 0.7;
+  s.effects.rest_in_roughness.kappa = 0.2;
+  return s;
 }
 
 std::vector<std::string> of_forest(const Scenario& s) {
@@ -71,6 +74,16 @@ TEST(StandWarnings, AForestThatNoStandCanBe) {
     EXPECT_THAT(warnings, ElementsAre(HasSubstr("more wood than any stand has")));
   EXPECT_THAT(of_stand(0.045, 0.35), ElementsAre(HasSubstr("the median density of the forest is 0.045 stems/ha")));
   EXPECT_THAT(of_rasters(0.045, 0.35), ElementsAre(HasSubstr("the median density of the forest is 0.045 stems/ha")));
+}
+
+TEST(StandWarnings, AForestWithoutTheEffectsThatItNeeds) {
+  Scenario s = on_four_hectares();
+  s.effects.forest_stems.density = 450.0, s.effects.forest_stems.diameter = 0.35;
+  s.effects.block_mass = {};
+  EXPECT_THAT(of_forest(s), ElementsAre(HasSubstr("holds large blocks best without [effects.block-mass]")));
+  s.effects.rest_in_roughness = {};
+  EXPECT_THAT(of_forest(s), ElementsAre(HasSubstr("without [effects.block-mass]"),
+                                        HasSubstr("keeps few blocks without [effects.rest-in-roughness]")));
 }
 
 /// N pi/4 DBH^2, to the 1 % of the median.
