@@ -53,6 +53,27 @@ class Effects(Case):
         self.assertLess(mean[1], 0.8 * mean[0])
         self.assert_replays("drag")
 
+    def test_a_flag_gives_the_bits_of_the_scenario(self):
+        """--effect, repeated and with semicolons, over [effects] of the file."""
+        self.run_scenario("file", '[effects.block-mass]\npreset = "measured"\n[effects.rest-in-roughness]\nkappa = 0.3\n')
+        self.write("plain.toml", HEAD + "[effects.rest-in-roughness]\nkappa = 0.1\n")
+        self.run_well("run", self.path("plain.toml"), "-o", self.path("flags"), "--effect", "air-drag.coefficient=0",
+                      "--effect", "block-mass.preset=measured; rest-in-roughness.kappa=0.3")
+        self.assertEqual(*(bands_of(self.path(name + "/energy.tif")).tobytes() for name in ("file", "flags")))
+        self.assertEqual(self.setting(self.record("flags"), "effects.rest-in-roughness.kappa"), [0.3])
+        self.assert_replays("flags")
+
+    def test_wrong_flags_are_refused(self):
+        self.write("s.toml", HEAD)
+        for flag, words in (("block-mass", ["must be NAME.KEY=VALUE, for example block-mass.preset=measured"]),
+                            ("block-mas.preset=measured", ["unknown key 'block-mas'", "did you mean 'block-mass'"]),
+                            ("block-mass.preset=mesured", ["effects.block-mass.preset = 'mesured'", "did you mean 'measured'"]),
+                            ("forest-stems.density=99999", ["effects.forest-stems.density = 99999", "0 to 10000"]),
+                            ("forest-stems.density=no.tif", ["effects.forest-stems.density = 'no.tif'", "no such file"]),
+                            ("air-drag.coefficient=1;air-drag.coefficient=2", ["air-drag.coefficient is given twice"]),
+                            ('air-drag.coefficient=1\n[dem]', ["effects.air-drag.coefficient", "must be a number"])):
+            self.fails(2, "flag --effect", *words, arguments=["run", self.path("s.toml"), "-o", self.path("none"), "--effect", flag])
+
     def test_forest_stems_in_polygons(self):
         write_features(self.path("stand.gpkg"), "stand", [(box(0, 150, 300, 50), [])])
         self.run_scenario("plain", "")

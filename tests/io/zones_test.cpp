@@ -78,6 +78,8 @@ TEST_F(Zones, WholeNumbersAndNull) {
                {{"POLYGON((0 0,30 0,30 10,0 10,0 0))", {"12"}}, {"POLYGON((0 0,10 0,10 10,0 10,0 0))", {"NULL"}}},
                {"12"}, "code");
   EXPECT_EQ(count(layer, 1), 2);  // NULL: the default ground again
+  EXPECT_TRUE(said(layer.warnings, "1 of 2 features have no code: the default ground is there"));
+  EXPECT_TRUE(said(layer.warnings, "zones that overlap others, in 1 cell: FID 2"));
 }
 
 TEST_F(Zones, AZoneThatIsNotDescribedIsNamedWithThoseThatAre) {

@@ -35,10 +35,11 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags);
 /// Adds --progress, `machine` or `json`. With `json` every message of `say` becomes a line {"warning": "..."}.
 void add_progress(CLI::App& command, std::string& progress);
 
-/// Adds --threads, --quiet or --surface with the text that they have in most commands.
+/// Adds --threads, --quiet, --surface or --effect with the text that they have in most commands.
 void add_threads(CLI::App& command, int& threads);
 void add_quiet(CLI::App& command, bool& quiet);
 void add_surface(CLI::App& command, std::optional<std::string>& surface);
+void add_effects(CLI::App& command, std::vector<std::string>& effects);
 
 using talus::run::Interrupted;  // exit code 130
 using talus::run::stop_interrupted;

@@ -191,6 +191,7 @@ void add_profile(CLI::App& app, Action& action) {
   add_places(*command, "--screen-x", flags.screens,
              "where crossings are recorded, in m along the line, with commas and no spaces: 110,199");
   add_surface(*command, flags.run.surface);
+  add_effects(*command, flags.run.effects);
   with(command->add_option(
            "--deformation-coefficient", flags.run.deformation_coefficient,
            "c of the impact law (0.25): a lower one gives higher energies and jumps, longer paths and more hits"),

@@ -355,6 +355,14 @@ void add_surface(CLI::App& command, std::optional<std::string>& surface) {
        surface_choice());
 }
 
+void add_effects(CLI::App& command, std::vector<std::string>& effects) {
+  command
+      .add_option("--effect", effects,
+                  "NAME.KEY=VALUE: a number of an effect, as block-mass.preset=measured (docs/effects.md); several with "
+                  "; between them; may be repeated")
+      ->allow_extra_args(false);
+}
+
 void say(const std::string& kind, const std::string& text) {
   if (says_json) {
     const std::string line = json_line(kind.empty() ? "message" : kind, talus::shortened(text, kLongestLine));

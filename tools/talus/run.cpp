@@ -62,6 +62,7 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
                   "NAME=COLUMN: a field of the sources under another name, as release_height=HEIGHT; NAME= alone: that "
                   "field is not read; may be repeated")
       ->allow_extra_args(false);
+  add_effects(command, flags.effects);
   with(command.add_option("--preset", flags.preset, "parameter set of the ground; talus presets lists them"),
        preset_choice(talus::kDefaultPreset));
   with(command.add_option("--parameters", flags.parameters,

@@ -12,7 +12,9 @@ CoveredCells mark_cells(const Parts& feature, std::uint8_t value, const Terrain&
   CoveredCells covered;
   for (const OGRPolygon& polygon : feature.polygons)
     for_each_cell(polygon, terrain.heights.grid, CellRule::Covered, [&](int column, int row) {
-      cells.at(column, row) = value;
+      std::uint8_t& cell = cells.at(column, row);
+      covered.taken += cell != 0 && cell != value ? 1U : 0U;
+      cell = value;
       ++covered.all;
       covered.with_height += std::isnan(terrain.heights.at(column, row)) ? 0U : 1U;
     });
@@ -29,6 +31,7 @@ void IdleFeatures::mark(const std::string& name, const Parts& feature, const std
     return off_.push_back(name);
   const std::uint8_t given = value();
   const CoveredCells covered = mark_cells(feature, given, terrain_, cells);
+  if (covered.taken > 0) takers_.push_back(name), taken_ += covered.taken;
   if (covered.all == 0)
     narrow_.push_back(name);
   else if (covered.with_height == 0)
@@ -52,6 +55,7 @@ void IdleFeatures::warn(const Raster<std::uint8_t>& cells, std::vector<std::stri
   for (const auto& [name, value] : marked_)
     if (!left[value]) under.push_back(name);
   add(under, "covered by later ones, so that none of their name is left", ": the last in the file counts");
+  add(takers_, "that overlap others, in " + std::to_string(taken_) + (taken_ == 1 ? " cell" : " cells"), ": the last in the file counts there");
   add(narrow_, "that cover no cell of the DEM (its centre counts) and have no effect",
       ": draw them wider than a cell, " + with_digits(std::max(grid.cell_x, grid.cell_y), 3) + " m");
 }

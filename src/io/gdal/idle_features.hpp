@@ -7,9 +7,9 @@
 
 namespace talus::io {
 
-/// Cells that a feature covers, and how many of them have a height.
+/// Cells that a feature covers, how many of them have a height, and how many had another value than 0 before.
 struct CoveredCells {
-  std::uint64_t all = 0, with_height = 0;
+  std::uint64_t all = 0, with_height = 0, taken = 0;
 };
 
 /// Gives the cells of the DEM whose centres the polygons of a feature cover a value.
@@ -44,6 +44,8 @@ class IdleFeatures {
   const Terrain& terrain_;
   OGREnvelope box_;
   std::vector<std::string> without_geometry_, off_, narrow_, without_height_;
+  std::vector<std::string> takers_;  // features in whose cells an earlier one of another value lies
+  std::uint64_t taken_ = 0;          // these cells
   std::vector<std::pair<std::string, std::uint8_t>> marked_;  // names and values of the others
 };
 

@@ -112,6 +112,10 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
   if (idle.all_off(features)) throw InputError(off_dem_text(request.path, idle.box(), layer, terrain));
   if (features == 0) out.warnings.push_back(request.path + ": has no features: the default ground is everywhere");
   idle.warn(out.zones, out.warnings);
+  if (use.count < features)
+    out.warnings.push_back(request.path + ": " + std::to_string(features - use.count) + " of " +
+                           std::to_string(features) + " features have no " + name +
+                           ": the default ground is there; give them a zone or preset, or 'default' if it is meant");
   out.notes.push_back(fields_note(request.path, {use}, features, layer.field_names()));
   index.warn_unseen(out.warnings);
   out.presets = index.named_presets();

@@ -35,7 +35,7 @@ class EffectReader {
   void read() {
     if (table_.value() == nullptr) return;
     EffectSpec& effect = spec_.effects[name_];
-    effect.where = table_.file() + ":" + std::to_string(table_.value()->line) + ": [effects." + name_ + "]";
+    effect.where = table_.at(*table_.value()) + ": [effects." + name_ + "]";
     const bool preset = has_presets(name_) && take_preset();
     const bool listed = entry_.mapped && trees(effect);
     const bool acts = numbers(effect) || listed || preset;

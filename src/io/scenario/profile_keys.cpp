@@ -54,7 +54,6 @@ class ProfileReader {
     read_screens(screens);
     screens.finish();
     top.finish();
-    check_effects();
   }
 
  private:
@@ -113,21 +112,21 @@ class ProfileReader {
     table.finish();
   }
 
-  /// Adds a fault for an effect that turns a block out of the plane, and for polygons.
-  void check_effects() {
-    for (const auto& [name, effect] : spec_.effects) {
-      if (find_effect(name)->leaves_plane)
-        faults_.push_back(effect.where + ": leads blocks out of the plane of the profile, must be left out here");
-      if (!effect.file.path.empty())
-        faults_.push_back(effect.file.where + ": there are no polygons on a profile, must be zones");
-    }
-  }
-
   ScenarioSpec& spec_;
   ProfileSpec& profile_;
   std::vector<std::string>& faults_;
   std::filesystem::path base_;
 };
+
+/// Adds a fault for an effect that turns a block out of the plane, and for polygons.
+void check_effects(const ScenarioSpec& spec, std::vector<std::string>& faults) {
+  for (const auto& [name, effect] : spec.effects) {
+    if (find_effect(name)->leaves_plane)
+      faults.push_back(effect.where + ": leads blocks out of the plane of the profile, must be left out here");
+    if (!effect.file.path.empty())
+      faults.push_back(effect.file.where + ": there are no polygons on a profile, must be zones");
+  }
+}
 
 /// Removes the sideways roughness of a preset. Adds a fault if the file gives one.
 void flatten(ZoneSpec& zone, const std::string& table, std::vector<std::string>& faults) {
@@ -219,6 +218,7 @@ ScenarioSpec read_profile_spec(const ProfileFlags& flags, std::vector<std::strin
   for (ZoneSpec& zone : spec.zones) flatten(zone, file + ": ground.zones." + zone.name, faults);
   lay_flags(spec, flags.run, faults);
   lay_profile_flags(spec, flags, faults);
+  check_effects(spec, faults);
   check_effect_zones(spec, faults);
   sort_by_line(faults, file);
   check_given(spec, faults);  // these faults have no line and come last

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <functional>
 
+#include "effect_keys.hpp"
+#include "io/gdal/csv_table.hpp"
 #include "named_file.hpp"
 #include "scenario_keys.hpp"
 #include "surface_key.hpp"
@@ -68,6 +70,40 @@ void lay_fields(ScenarioSpec& spec, const std::vector<std::string>& flags, std::
     spec.source_fields[name] = field;
     spec.origins["sources.fields." + name] = "flag --field";
   }
+}
+
+/// The parts of texts between semicolons.
+std::vector<std::string> parts_of(const std::vector<std::string>& texts) {
+  std::vector<std::string> parts;
+  for (const std::string& text : texts)
+    for (std::size_t from = 0; from <= text.size();) {
+      const std::size_t to = std::min(text.find(';', from), text.size());
+      parts.push_back(trimmed(text.substr(from, to - from)));
+      from = to + 1;
+    }
+  return parts;
+}
+
+/// --effect NAME.KEY=VALUE, laid over [effects].
+void lay_effects(ScenarioSpec& spec, const std::vector<std::string>& flags, std::vector<std::string>& faults) {
+  TomlValue effects;
+  for (const std::string& flag : parts_of(flags)) {
+    const std::string where = "flag --effect " + flag;
+    const std::size_t equals = flag.find('='), dot = flag.find('.');
+    if (equals == std::string::npos || dot > equals) {
+      faults.push_back(where + ": must be NAME.KEY=VALUE, for example block-mass.preset=measured (docs/effects.md)");
+      continue;
+    }
+    const std::string name = trimmed(flag.substr(0, dot)), key = trimmed(flag.substr(dot + 1, equals - dot - 1));
+    auto effect = std::ranges::find(effects.members, name, &TomlMember::key);
+    if (effect == effects.members.end()) effect = effects.members.insert(effect, {name, {}});
+    if (effect->value.find(key) != nullptr)
+      faults.push_back(where + ": " + name + "." + key + " is given twice, must be once");
+    else
+      effect->value.members.push_back({key, toml_value(trimmed(flag.substr(equals + 1)))});
+  }
+  if (!flags.empty())
+    read_effects(spec, {&effects, "effects", "flag --effect", faults}, std::filesystem::current_path(), "flag --effect");
 }
 
 /// --sources-layer NAME: the layer of the file of sources, also of one that the scenario names.
@@ -157,6 +193,7 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
     spec.origins["ground.field"] = "flag --zone-field";
   }
   lay_fields(spec, flags.fields, faults);
+  lay_effects(spec, flags.effects, faults);
   if (flags.surface)
     if (const auto kind = surface_of_flag(*flags.surface, faults)) {
       spec.surface = *kind;

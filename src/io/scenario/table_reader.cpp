@@ -90,8 +90,12 @@ std::optional<std::vector<double>> TableReader::numbers(const std::string& key, 
   return numbers.size() == value->items.size() ? std::optional(numbers) : std::nullopt;
 }
 
+std::string TableReader::at(const TomlValue& value) const {
+  return file_ + (value.line > 0 ? ":" + std::to_string(value.line) : "");
+}
+
 std::string TableReader::where(const std::string& key, const TomlValue& value) const {
-  return file_ + ":" + std::to_string(value.line) + ": " + full(key) + " = " + value.shown();
+  return at(value) + ": " + full(key) + " = " + value.shown();
 }
 
 void TableReader::fault(const std::string& key, const TomlValue& value, const std::string& rule) {
@@ -102,8 +106,7 @@ void TableReader::finish() {
   if (table_ == nullptr) return;
   for (const auto& [key, value] : table_->members)
     if (std::find(known_.begin(), known_.end(), key) == known_.end())
-      faults_.push_back(file_ + ":" + std::to_string(value.line) + ": unknown key '" + key + "' " +
-                        (name_.empty() ? "at the top" : "in [" + name_ + "]") + known_names(key, known_));
+      faults_.push_back(at(value) + ": unknown key '" + key + "' " + (name_.empty() ? "at the top" : "in [" + name_ + "]") + known_names(key, known_));
 }
 
 }  // namespace talus::io

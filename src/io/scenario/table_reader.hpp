@@ -33,6 +33,8 @@ class TableReader {
 
   /// Adds a fault: "scenario.toml:12: blocks.density = 9: `rule`".
   void fault(const std::string& key, const TomlValue& value, const std::string& rule);
+  /// "scenario.toml:3"; without the line where there is none.
+  std::string at(const TomlValue& value) const;
   /// "scenario.toml:3: dem = 'dem.tif'".
   std::string where(const std::string& key, const TomlValue& value) const;
   /// "blocks.density".

@@ -178,6 +178,20 @@ TomlValue read_toml(const std::string& path, const std::string& name) {
   }
 }
 
+TomlValue toml_value(const std::string& text) {
+  check_depth(text, text);
+  TomlValue value;
+  value.kind = TomlValue::Kind::Text;
+  value.text = text;
+  try {
+    const TomlValue tree = converted(toml::parse("value = " + text));
+    if (tree.members.size() == 1) value = tree.members.front().value;
+  } catch (const toml::parse_error&) {  // a text without quotation marks
+  }
+  value.line = 0;
+  return value;
+}
+
 TomlValue read_settings(const std::string& path, const std::string& name, const std::string& content) {
   TomlValue tree = read_toml(path, name);
   if (tree.says_nothing()) throw InputError(name + ": holds no " + content + ": is it the file that was meant?");

@@ -6,7 +6,7 @@ namespace talus::io {
 
 struct TomlMember;
 
-/// A value of a TOML file with its line. Other files use this instead of toml++, which is slow to compile.
+/// A value of a TOML file with its line (0: from a flag). Other files use this instead of toml++, which is slow to compile.
 struct TomlValue {
   enum class Kind { Boolean, Number, Text, List, Table, Date };
 
@@ -33,6 +33,9 @@ struct TomlMember {
 /// Reads a TOML file. `name` stands for it in messages.
 /// Throws InputError "name:12: ..." where it cannot be read or is no TOML.
 TomlValue read_toml(const std::string& path, const std::string& name);
+
+/// The value that a text is in TOML, as after "KEY = ": 0.7, ["talus"]. What is no TOML is a text: measured.
+TomlValue toml_value(const std::string& text);
 
 /// Reads a TOML file that is given for its settings. Throws also if it has no key: the defaults would be taken
 /// unnoticed.

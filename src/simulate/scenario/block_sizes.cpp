@@ -29,8 +29,8 @@ std::string direction(bool larger, bool smaller) {
   std::string text;
   if (larger)
     text +=
-        "; larger blocks: run-out and speed too low (unsafe): run with [effects.block-mass] preset = \"measured\", "
-        "too, and take the higher hazard";
+        "; larger blocks: run-out and speed too low (unsafe): run with --effect block-mass.preset=measured, too, "
+        "and take the higher hazard";
   if (smaller)
     text += "; smaller blocks: at both measured sites they went farther than by the default ground: fit the ground";
   if (text.empty()) text = "; small blocks run faster and jump higher than large ones, against field experience";
@@ -143,7 +143,7 @@ std::string sorting_warning(const Effects& effects) {
   if (!find_effect("rest-in-roughness")->acts(effects) || find_effect("block-mass")->acts(effects)) return {};
   return std::string(kSizeWarning) +
          "[effects.rest-in-roughness] without [effects.block-mass] sorts them the wrong way, large blocks high and "
-         "small ones far: add [effects.block-mass] preset = \"measured\", see docs/effects.md";
+         "small ones far: add --effect block-mass.preset=measured, see docs/effects.md";
 }
 
 }  // namespace talus

@@ -45,8 +45,8 @@ std::string thick_text(double basal_area) {
 void warn_of_stems_alone(const Effects& effects, std::vector<std::string>& warnings) {
   if (!find_effect("block-mass")->acts(effects))
     warnings.push_back(std::string(kForest) +
-                       "holds large blocks best without [effects.block-mass] preset = \"measured\", forests hold small "
-                       "ones (unsafe for large ones): see docs/effects.md");
+                       "holds large blocks best without [effects.block-mass], forests hold small ones (unsafe for large "
+                       "ones): add --effect block-mass.preset=measured, see docs/effects.md");
   if (!find_effect("rest-in-roughness")->acts(effects))
     warnings.push_back(std::string(kForest) +
                        "keeps few blocks without [effects.rest-in-roughness]: one that a stem has stopped moves on "

@@ -25,6 +25,7 @@ LABELS = {
     "zones-raster": ("Zones of ground as a raster", "Bodenzonen als Raster"),
     "zone-field": ("Field: zone or preset", "Feld: Zone oder Parametersatz"),
     "thresholds": ("Thresholds of energy", "Schwellen der Energie"),
+    "effect": ("Effects (forest, size of the blocks, ...)", "Effekte (Wald, Blockgrösse, ...)"),
     "scenario": ("Scenario file", "Szenario-Datei"),
     "surface": ("Surface between cell centres", "Oberfläche zwischen den Zellmitten"),
     "seed": ("Seed of the random numbers", "Startwert der Zufallszahlen"),
@@ -319,6 +320,10 @@ GERMAN = {
     "ground: polygons, or a raster; what it names is a zone of the scenario, or a preset":
         "Boden: Flächen oder ein Raster; was sie nennen, ist eine Zone des Szenarios oder ein Parametersatz",
     "the field of --zones that names the zone or preset; zone": "das Feld der Zonen, das Zone oder Parametersatz nennt; zone",
+    "NAME.KEY=VALUE: a number of an effect, as block-mass.preset=measured (docs/effects.md); several with ; between them; "
+    "may be repeated":
+        "NAME.SCHLÜSSEL=WERT: eine Zahl eines Effekts, wie block-mass.preset=measured (docs/effects.md); mehrere mit ; "
+        "dazwischen; darf mehrmals stehen",
     "parameter set of the ground; talus presets lists them": "Parametersatz des Bodens; talus presets listet sie",
     "bilinear or creased (creased): heights between the cells' centres":
         "bilinear oder creased (creased): Höhen zwischen den Zellmitten",

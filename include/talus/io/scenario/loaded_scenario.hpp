@@ -38,7 +38,8 @@ struct RunFlags {
   std::vector<double> thresholds;                 ///< of the energy [kJ]; empty: not given
   std::optional<std::uint32_t> trajectories;
   std::optional<std::uint64_t> seed;
-  std::vector<std::string> fields;  ///< "diameter=Durchmesser": names of fields of the sources
+  std::vector<std::string> fields;   ///< "diameter=Durchmesser": names of fields of the sources
+  std::vector<std::string> effects;  ///< "block-mass.preset=measured": keys of [effects]
   bool energy_total = false, count_rotation = false, bounds = false;
   /// Results whose scenario this is: its files may have been moved or copied together with them. The caller compares
   /// what the files hold.
