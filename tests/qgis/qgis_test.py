@@ -33,7 +33,7 @@ sys.path.append(os.environ["QGIS_PLUGINPATH"])
 HERE = os.path.dirname(os.path.abspath(__file__))
 VALLEY = os.path.join(HERE, "../../data/valley")
 DEM = os.path.join(VALLEY, "dem.tif")
-ALGORITHMS = ["barrier", "calibrate", "check", "diagnose", "hazard", "objects", "profile", "run", "sources"]
+ALGORITHMS = ["barrier", "calibrate", "check", "compare", "diagnose", "hazard", "objects", "profile", "run", "sources"]
 QGIS_PROCESS = shutil.which("qgis_process.bin") or "qgis_process"  # Debian's own wrapper fails in 3.22
 
 application = None
