@@ -1144,6 +1144,23 @@ class FromPython(Case):
         self.assertGreater(len(hazard.renderer().legendSymbologyItems()), 2)
         QgsProject.instance().clear()
 
+    def test_a_comparison_is_a_group_with_styles(self):
+        """Over the hillshade and with the sources of the runs, as its talus.qgs; titles say which energy the runs count."""
+        for name, ground in (("a", "upper-talus-3d"), ("b", "lower-talus-3d")):
+            self.run_algorithm("run", self.inputs(OUT=self.path(name), PRESET=ground, FREQUENCY=1.0))
+            self.run_algorithm("hazard", {"FOLDER": self.path(name), "LOAD": False})
+        context = QgsProcessingContext()
+        found, good = self.run_algorithm("compare", {"FIRST": self.path("a"), "SECOND": self.path("b"), "OUT": self.path("out"),
+                                                     "LOAD": True}, context=context)
+        self.assertTrue(good)
+        self.assertEqual(found["CHANGE_ENERGY"], self.path("out/change_energy.tif"))
+        self.assertEqual(found["TABLE"], self.path("out/compare.csv"))
+        self.load(context)
+        layers = {layer.name(): layer for layer in self.assert_as_in_project()}
+        for name in ("Change: Energy, P95", "Change: Hazard class, translational energy", "Highest: Energy, P95"):
+            self.assert_drawn_as_in_style(layers[name])
+        QgsProject.instance().clear()
+
     def test_where_the_hazard_goes_on_is_loaded_over_the_classes(self):
         """Also where the maps are made anew. Without blocks that leave the map there is no such layer."""
         gdal.Translate(self.path("part.tif"), DEM, projWin=[2650100, 1170750, 2650900, 1170450])

@@ -354,14 +354,15 @@ void add_compared(const ProjectLayer& layer, std::vector<ProjectLayer>& to) {
   if (!layer.file.ends_with(".tif")) return;
   const auto raster = compared_raster(filled(fs::path(layer.file).stem().string(), "<n>", "1"));
   if (!raster) return;
-  const auto add = [&](const char* begin, const char* title) {
+  const auto add = [&](const char* begin, const char* title, bool shown) {
     ProjectLayer& made = to.emplace_back(layer);
     made.file.insert(0, begin);
     made.title.insert(0, title);
+    made.shown = shown;
     if (!made.style.empty()) made.style.insert(0, begin);
   };
-  raster->lower_is_worse ? add("lowest_", "Lowest: ") : add("highest_", "Highest: ");
-  if (layer.style.empty()) add("change_", "Change: ");
+  raster->lower_is_worse ? add("lowest_", "Lowest: ", layer.shown) : add("highest_", "Highest: ", layer.shown);
+  if (layer.style.empty()) add("change_", "Change: ", false);
 }
 
 /// Adds the rasters of a run that have no title here: their names are their titles; after them those of comparisons.

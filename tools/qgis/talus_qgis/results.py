@@ -175,7 +175,7 @@ def _in_lines(of_areas):
 
 
 def _is_hazard_class(layer):
-    return os.path.basename(layer.source()) == "hazard_class.tif"
+    return os.path.basename(layer.source()) in ("hazard_class.tif", "highest_hazard_class.tif")
 
 
 def _inputs_of(folder, role):

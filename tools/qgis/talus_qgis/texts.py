@@ -270,6 +270,13 @@ GERMAN = {
     "no crossing": "kein Durchgang",
     "too few crossings for a design": "zu wenige Durchgänge für eine Bemessung",
     "Line of the barrier, by stretch": "Linie des Schutznetzes, je Abschnitt",
+    "3 or more classes lower": "3 oder mehr Stufen tiefer",
+    "2 classes lower": "2 Stufen tiefer",
+    "1 class lower": "1 Stufe tiefer",
+    "the same class": "dieselbe Stufe",
+    "1 class higher": "1 Stufe höher",
+    "2 classes higher": "2 Stufen höher",
+    "3 or more classes higher": "3 oder mehr Stufen höher",
     "none": "keine",
     "residual": "Restgefährdung",
     "low": "gering",
@@ -492,13 +499,6 @@ GERMAN = {
         "Namen ohne Endung, etwa energy,return_period_300; sonst von denen, die alle Läufe haben, hazard_class, "
         "annual_frequency, impact_probability, reach_probability, energy, jump_height, velocity",
     "replace the folder if it holds an earlier comparison": "den Ordner ersetzen, wenn er einen früheren Vergleich enthält",
-    "3 or more classes lower": "3 oder mehr Stufen tiefer",
-    "2 classes lower": "2 Stufen tiefer",
-    "1 class lower": "1 Stufe tiefer",
-    "the same class": "dieselbe Stufe",
-    "1 class higher": "1 Stufe höher",
-    "2 classes higher": "2 Stufen höher",
-    "3 or more classes higher": "3 oder mehr Stufen höher",
 }
 # Titles of the rasters of talus compare.
 GERMAN.update({begin + title: german_begin + of_run
