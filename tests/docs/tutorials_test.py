@@ -44,7 +44,7 @@ class Tutorials(unittest.TestCase):
         for figure in ("forest road,6,3481,0.0445513", "forest road,6,51,0.000654185", "forest road,6,10668,0.136347", "Suedgrat,0.0202267,0.45401",
                        "SEL     383.1 kJ", "MEL     498.1 kJ", "h_i     2.412 m",
                        "300 years   energy 28.9 [27.9, 30.5] kJ     jump height 1.1 [1.07, 1.14] m",
-                       "3 892 caught, 56 over it, 0 through it", "657 over it, 0 through it"):
+                       "| model.deformation_coefficient ", "3 892 caught, 56 over it, 0 through it", "657 over it, 0 through it"):
             self.assertIn(figure, printed)
 
     def test_prepare_data(self):

@@ -16,6 +16,7 @@
 #include "talus/io/results/class_names.hpp"
 #include "talus/io/results/qgis_project.hpp"
 #include "talus/io/results/vector_style.hpp"
+#include "talus/products/comparison.hpp"
 #include "talus/products/hazard_table.hpp"
 #include "talus/products/raster_table.hpp"
 
@@ -188,6 +189,31 @@ TEST(Colours, LightnessIsMonotone) {  // in every eye: the order of the classes 
     }
 }
 
+TEST(Colours, ChangesDifferForAllEyes) {  // each from each: a rise is not taken for a fall
+  constexpr double kLeast = 15.0;         // as of neighbours
+  const Map map = change_map(compared_raster("energy").value());
+  const std::vector<LegendClass> classes = classes_of(map);
+  ASSERT_EQ(classes.size(), 7U);
+  for (const auto& [eye, matrix] : eyes())
+    for (std::size_t i = 0; i < 7; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        EXPECT_GE((lab_of(matrix * linear(classes[i].colour)) - lab_of(matrix * linear(classes[j].colour))).norm(),
+                  kLeast)
+            << classes[i].colour << " " << classes[j].colour << " " << eye;
+}
+
+TEST(Style, ChangesHaveBothSigns) {
+  const std::string energy = style_of(change_map(compared_raster("energy").value()));
+  EXPECT_NE(energy.find("value=\"-300\" label=\"up to -300 kJ\" color=\"#08519c\" alpha=\"255\""), std::string::npos)
+      << energy;
+  EXPECT_NE(energy.find("value=\"30\" label=\"-30 to 30 kJ\" color=\"#ffffff\" alpha=\"0\""), std::string::npos)
+      << energy;
+  EXPECT_NE(energy.find("value=\"inf\" label=\"above 300 kJ\" color=\"#a63603\""), std::string::npos) << energy;
+  EXPECT_NE(energy.find("band=\"3\""), std::string::npos) << energy;  // P95
+  const std::string years = style_of(change_map(compared_raster("return_period_30").value()));
+  EXPECT_NE(years.find("label=\"up to -100 years\" color=\"#a63603\""), std::string::npos) << "fewer years are worse";
+}
+
 TEST(Colours, ReturnPeriodsHaveNoneOfWhatTheyAreDrawnOver) {
   // Objects at a road are drawn by return period, over the classes of hazard and beside screens by energy.
   constexpr double kLeast = 15.0;  // as of neighbours
@@ -284,7 +310,11 @@ TEST(ProjectLayers, HaveATitleForEveryRaster) {
   std::set<std::string> known;
   for (const ProjectLayer& layer : project_layers()) known.insert(layer.file.substr(0, layer.file.find('<')));
   for (const RunRaster& raster : run_rasters()) EXPECT_EQ(known.count(raster.map.name + ".tif"), 1U) << raster.map.name;
-  EXPECT_EQ(project_layers().back().file, "sources.tif") << "every raster of today has a title of its own";
+  for (const RunRaster& raster : run_rasters())
+    EXPECT_EQ(std::ranges::find(project_layers(), raster.map.name, &ProjectLayer::title), project_layers().end())
+        << "every raster of today has a title of its own";
+  for (const char* file : {"highest_energy.tif", "change_energy.tif", "lowest_return_period_<n>.tif"})
+    EXPECT_NE(std::ranges::find(project_layers(), file, &ProjectLayer::file), project_layers().end()) << file;
   for (const HazardRaster& raster : hazard_rasters()) {
     const std::string file = raster.map.name + ".tif";
     EXPECT_EQ(known.count(file.substr(0, file.find('<'))), 1U) << file;

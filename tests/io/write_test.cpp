@@ -197,6 +197,23 @@ Map quiet_map(bool known) {
   return map;
 }
 
+TEST_F(Write, OverviewsOfAChangeShowWhatIsFarthestFromZero) {
+  Map map{"change", "A test", Map::Kind::Quantity, {{"change", "kJ"}}, {}};
+  map.farthest_in_overviews = true;
+  map.fill = [](const CellWindow& window, std::span<double> values) {  // -20000, 3, nothing, nothing in turn
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const int column = window.column + static_cast<int>(i) % window.columns;
+      values[i] = column % 4 == 0 ? -20000.0 : column % 4 == 1 ? 3.0 : std::nan("");
+    }
+  };
+  ASSERT_TRUE(write_map(map, target(600, 600)));
+  const Dataset file = open_dataset((folder_ / "change.tif").string(), GDAL_OF_RASTER);
+  GDALRasterBand* overview = file->GetRasterBand(1)->GetOverview(0);
+  std::vector<float> values(2);
+  ASSERT_EQ(overview->RasterIO(GF_Read, 0, 0, 2, 1, values.data(), 2, 1, GDT_Float32, 0, 0, nullptr), CE_None);
+  EXPECT_EQ(values, (std::vector{-20000.0F, -9999.0F}));
+}
+
 TEST_F(Write, QuietPartsHaveTheBytesOfAnyOther) {
   ASSERT_TRUE(write_map(quiet_map(false), target(kMapColumns, kMapRows)));
   const std::string looked_at = text_of_file(folder_ / "energy.tif");

@@ -33,7 +33,7 @@ sys.path.append(os.environ["QGIS_PLUGINPATH"])
 HERE = os.path.dirname(os.path.abspath(__file__))
 VALLEY = os.path.join(HERE, "../../data/valley")
 DEM = os.path.join(VALLEY, "dem.tif")
-ALGORITHMS = ["barrier", "calibrate", "check", "diagnose", "hazard", "objects", "profile", "run", "sources"]
+ALGORITHMS = ["barrier", "calibrate", "check", "compare", "diagnose", "hazard", "objects", "profile", "run", "sources"]
 QGIS_PROCESS = shutil.which("qgis_process.bin") or "qgis_process"  # Debian's own wrapper fails in 3.22
 
 application = None
@@ -1142,6 +1142,23 @@ class FromPython(Case):
         hazard = next(layer for layer in layers if layer.name().startswith("Hazard class"))
         self.assert_drawn_as_in_style(hazard)
         self.assertGreater(len(hazard.renderer().legendSymbologyItems()), 2)
+        QgsProject.instance().clear()
+
+    def test_a_comparison_is_a_group_with_styles(self):
+        """Over the hillshade and with the sources of the runs, as its talus.qgs; titles say which energy the runs count."""
+        for name, ground in (("a", "upper-talus-3d"), ("b", "lower-talus-3d")):
+            self.run_algorithm("run", self.inputs(OUT=self.path(name), PRESET=ground, FREQUENCY=1.0))
+            self.run_algorithm("hazard", {"FOLDER": self.path(name), "LOAD": False})
+        context = QgsProcessingContext()
+        found, good = self.run_algorithm("compare", {"FIRST": self.path("a"), "SECOND": self.path("b"), "OUT": self.path("out"),
+                                                     "LOAD": True}, context=context)
+        self.assertTrue(good)
+        self.assertEqual(found["CHANGE_ENERGY"], self.path("out/change_energy.tif"))
+        self.assertEqual(found["TABLE"], self.path("out/compare.csv"))
+        self.load(context)
+        layers = {layer.name(): layer for layer in self.assert_as_in_project()}
+        for name in ("Change: Energy, P95", "Change: Hazard class, translational energy", "Highest: Energy, P95"):
+            self.assert_drawn_as_in_style(layers[name])
         QgsProject.instance().clear()
 
     def test_where_the_hazard_goes_on_is_loaded_over_the_classes(self):

@@ -26,6 +26,7 @@ void add_diagnose(CLI::App& app, Action& action);
 void add_score(CLI::App& app, Action& action);
 void add_sources(CLI::App& app, Action& action);
 void add_hazard(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
 void add_merge(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);
 

@@ -12,7 +12,8 @@
 namespace talus {
 
 /// Colours of a legend, from light to dark. `PuBuGnFromDark` is from dark to light: small values are the grave ones.
-enum class Palette { Plasma, PuBuGnFromDark, Viridis, YlGnBu, HazardClasses };
+/// Those of a change are blue below 0, nothing around 0 and orange above; `ChangeReversed` the other way round.
+enum class Palette { Plasma, PuBuGnFromDark, Viridis, YlGnBu, HazardClasses, Change, ChangeReversed };
 
 /// How a map is drawn: one colour up to each limit, and one above the last limit. A probability has no colour above
 /// its last limit, which is 1.
@@ -45,8 +46,9 @@ struct Map {
   std::vector<Band> bands;
   Legend legend;
   bool smallest_in_overviews = false;  ///< overviews show the smallest cell of a pixel, else the largest
-  std::vector<std::string> classes{};  ///< names of the values 0, 1, ... if the values are classes
+  std::vector<std::string> classes{};  ///< names of the values 0, 1, ... if the values are classes; of the changes
   std::vector<Mark> marks{};
+  bool farthest_in_overviews = false;  ///< overviews show the cell farthest from 0
 
   /// Fills the cells of a window: values[(row * window.columns + column) * bands + band], row 0 in the south; NaN means
   /// no value. Several threads may call it at the same time.

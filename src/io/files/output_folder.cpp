@@ -65,6 +65,7 @@ void refuse_foreign_files(const fs::path& folder) {
 std::string command_of_results(const fs::path& folder) {
   for (const auto& [file, command] : {std::pair{"calibration.json", "talus calibrate"},
                                       {"diagnosis.json", "talus diagnose"},
+                                      {"compare.json", "talus compare"},
                                       {"profile.toml", "talus profile"}})
     if (fs::exists(folder / file)) return command;
   return "talus run";
@@ -88,14 +89,15 @@ void refuse_taken_name(const fs::path& folder, bool overwrite, const std::string
   if (fs::is_empty(folder)) return;
   if (!overwrite)
     throw InputError(name + ": the folder is there and not empty; give a new name, or --overwrite to replace it");
-  for (const char* mark : {"run.json", "part.json", "calibration.json", "diagnosis.json"})
+  for (const char* mark : {"run.json", "part.json", "calibration.json", "diagnosis.json", "compare.json"})
     if (fs::exists(folder / mark)) {
       refuse_foreign_files(folder);
       return refuse_other_command(folder, command);
     }
   throw InputError(name +
                    ": --overwrite replaces only results of talus, and there is no run.json, part.json, "
-                   "calibration.json or diagnosis.json in this folder; give a new name, or remove the folder yourself");
+                   "calibration.json, diagnosis.json or compare.json in this folder; give a new name, or remove the "
+                   "folder yourself");
 }
 
 std::string not_readable_text(const fs::path& folder, const fs::filesystem_error& error) {

@@ -65,8 +65,9 @@ std::vector<std::string> pages_in(const fs::path& folder) {
 
 /// The names that the records of a folder list, and those that are known by the records that are there.
 std::set<std::string> own_names(const fs::path& folder) {
-  std::set<std::string> own{"run.json", "hazard.json", "part.json", OutputFolder::kWork, FolderLock::kName};
-  for (const char* record : {"run.json", "hazard.json"})
+  std::set<std::string> own{"run.json",  "hazard.json",       "compare.json",
+                            "part.json", OutputFolder::kWork, FolderLock::kName};
+  for (const char* record : {"run.json", "hazard.json", "compare.json"})
     for (std::string& name : files_of_record(folder / record)) own.insert(std::move(name));
   if (fs::exists(folder / "part.json")) own.insert("scenario.toml");
   if (fs::exists(folder / "calibration.json") || fs::exists(folder / "diagnosis.json"))

@@ -24,7 +24,7 @@ bool is_run_page(const std::filesystem::path& file);
 
 /// The files and folders in a folder of results that Talus has not written there, in the order of their names; folders
 /// end in "/". Talus's own are:
-///   what the records run.json, hazard.json and part.json list, and the records;
+///   what the records run.json, hazard.json, compare.json and part.json list, and the records;
 ///   the files of `barrier`, `calibrate`, `diagnose`, with the folders of their campaigns; the page of `report`;
 ///   what readers leave beside one of these, or beside a raster that is gone (`read_file_of`).
 std::vector<std::string> foreign_in(const std::filesystem::path& folder);

@@ -16,6 +16,7 @@
 #include "talus/io/gdal/layer_name.hpp"
 #include "talus/io/results/style.hpp"
 #include "talus/io/results/vector_style.hpp"
+#include "talus/products/comparison.hpp"
 #include "talus/products/energy_words.hpp"
 #include "talus/products/raster_table.hpp"
 #include "xml.hpp"
@@ -348,12 +349,31 @@ void add_view(const Element& root, const ProjectGround& ground) {
   add_system(canvas, "destinationsrs", geo.crs_wkt);
 }
 
-/// Adds the rasters of a run that have no title here: their names are their titles.
+/// The entries of the rasters of a comparison, of an entry of a raster of runs. A change has no marks.
+void add_compared(const ProjectLayer& layer, std::vector<ProjectLayer>& to) {
+  if (!layer.file.ends_with(".tif")) return;
+  const auto raster = compared_raster(filled(fs::path(layer.file).stem().string(), "<n>", "1"));
+  if (!raster) return;
+  const auto add = [&](const char* begin, const char* title, bool shown) {
+    ProjectLayer& made = to.emplace_back(layer);
+    made.file.insert(0, begin);
+    made.title.insert(0, title);
+    made.shown = shown;
+    if (!made.style.empty()) made.style.insert(0, begin);
+  };
+  raster->lower_is_worse ? add("lowest_", "Lowest: ", layer.shown) : add("highest_", "Highest: ", layer.shown);
+  if (layer.style.empty()) add("change_", "Change: ", false);
+}
+
+/// Adds the rasters of a run that have no title here: their names are their titles; after them those of comparisons.
 std::vector<ProjectLayer> with_further_rasters(std::vector<ProjectLayer> layers) {
   for (const RunRaster& raster : run_rasters()) {
     const std::string file = raster.map.name + ".tif";
     if (std::ranges::find(layers, file, &ProjectLayer::file) == layers.end()) layers.push_back({file, raster.map.name});
   }
+  std::vector<ProjectLayer> compared;
+  for (const ProjectLayer& layer : layers) add_compared(layer, compared);
+  layers.insert(layers.end(), compared.begin(), compared.end());
   return layers;
 }
 
@@ -369,7 +389,8 @@ ProjectGround ground_of(const Json& run) {
   ground.geo = {grid.at("crs_wkt"), grid.at("west"), grid.at("north"), grid.at("cell_x_m"), grid.at("cell_y_m")};
   ground.columns = static_cast<int>(whole_number(grid.at("columns"), 1, 1 << 30));
   ground.rows = static_cast<int>(whole_number(grid.at("rows"), 1, 1 << 30));
-  for (const Json& input : run.at("inputs")) ground.inputs.push_back({input.at("role"), input.at("path"), ""});
+  for (const Json& input : run.at("inputs"))
+    ground.inputs.push_back({input.at("role"), input.at("path"), input.value("sha256", "")});
   ground.dem = dem_of(ground.inputs);
   for (const Json& setting : run.value("settings", Json::array()))
     if (setting.at("value").is_string())
@@ -426,6 +447,10 @@ const std::vector<ProjectLayer>& project_layers() {
 ProjectGround ground_of(const LoadedScenario& loaded) {
   const Grid& grid = loaded.scenario.surface.grid();
   return {loaded.geo, grid.columns, grid.rows, dem_of(loaded.inputs), loaded.inputs, loaded.settings};
+}
+
+ProjectGround ground_of_run(const fs::path& folder) {
+  return ground_of(read_record(folder / "run.json"));
 }
 
 std::string project_of(const std::vector<std::string>& files, const fs::path& folder, const fs::path& shown_as,

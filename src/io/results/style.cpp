@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 
 #include "io/gdal/map_raster.hpp"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr std::size_t kColours = 6;
 using Colours = std::array<const char*, kColours>;
+constexpr const char* kClear = "#ffffff";  // of a class without a colour
 
 // Six colours each of plasma and viridis of matplotlib (CC0) and of YlGnBu and PuBuGn of ColorBrewer (Apache); none is
 // grey, as the hillshade below is. The darkest of plasma and of PuBuGn are darker here: without the red cones
@@ -31,7 +33,11 @@ constexpr Colours kYlGnBu{"#c7e9b4", "#7fcdbb", "#41b6c4", "#1d91c0", "#225ea8",
 // The classes of the Swiss matrix: yellow and white, yellow, blue, red; further ones, should there be any, darker.
 constexpr Colours kHazardClasses{"#fff9c4", "#ffd600", "#2979ff", "#d50000", "#7f0000", "#3e0000"};
 
-const Colours& colours(Palette palette) {
+// Of a change: blues and oranges of ColorBrewer, which differ for the colour-blind too; around 0 none.
+constexpr std::array kChange{"#08519c", "#3182bd", "#9ecae1", kClear, "#fdae6b", "#e6550d", "#a63603"};
+constexpr std::array kChangeReversed{"#a63603", "#e6550d", "#fdae6b", kClear, "#9ecae1", "#3182bd", "#08519c"};
+
+std::span<const char* const> colours(Palette palette) {
   switch (palette) {
     case Palette::Plasma:
       return kPlasma;
@@ -43,6 +49,10 @@ const Colours& colours(Palette palette) {
       return kYlGnBu;
     case Palette::HazardClasses:
       return kHazardClasses;
+    case Palette::Change:
+      return kChange;
+    case Palette::ChangeReversed:
+      return kChangeReversed;
   }
   throw std::logic_error("a palette without colours");
 }
@@ -68,10 +78,17 @@ std::string plain(double value) {
 
 /// The classes of a map whose values are classes, from 1.
 std::vector<LegendClass> named_classes(const Map& map) {
-  const Colours& all = colours(map.legend.palette);
+  const auto all = colours(map.legend.palette);
   std::vector<LegendClass> classes;
   for (std::size_t i = 1; i < map.classes.size(); ++i)
     classes.push_back({static_cast<double>(i), map.classes[i], all[std::min(i, kColours) - 1]});
+  return classes;
+}
+
+/// The classes of a map of changes, by their names.
+std::vector<LegendClass> named_changes(const Map& map) {
+  std::vector<LegendClass> classes = classes_of(map.legend, false);
+  for (std::size_t i = 0; i < classes.size(); ++i) classes[i].label = map.classes[i];
   return classes;
 }
 
@@ -94,8 +111,8 @@ std::string zero_label(const Map& map) {
 }
 
 void add_items(const Element& shader, const Map& map) {
-  if (map.legend.has_zero) add_item(shader, {0.0, zero_label(map), "#ffffff"}, 0);
-  for (const LegendClass& item : classes_of(map)) add_item(shader, item, 255);
+  if (map.legend.has_zero) add_item(shader, {0.0, zero_label(map), kClear}, 0);
+  for (const LegendClass& item : classes_of(map)) add_item(shader, item, item.colour == kClear ? 0 : 255);
 }
 
 Element add_renderer(const Element& pipe, const char* type, std::size_t band, const char* opacity) {
@@ -106,16 +123,17 @@ Element add_renderer(const Element& pipe, const char* type, std::size_t band, co
 }
 
 void add_classes(const Element& pipe, const Map& map) {
+  const std::string minimum = text_of(std::min(0.0, map.legend.limits.front()));
   const std::string maximum = text_of(map.legend.limits.back());
   const Element renderer = add_renderer(pipe, "singlebandpseudocolor", shown_band(map), "0.8");
-  renderer.set("classificationMin", "0").set("classificationMax", maximum).add("rasterTransparency");
+  renderer.set("classificationMin", minimum).set("classificationMax", maximum).add("rasterTransparency");
   const Element origin = renderer.add("minMaxOrigin");
   origin.add("limits", "None");
   origin.add("extent", "WholeRaster");
   origin.add("statAccuracy", "Estimated");
   const Element shader = renderer.add("rastershader").add("colorrampshader");
-  shader.set("colorRampType", "DISCRETE").set("classificationMode", "1").set("clip", "0").set("minimumValue", "0");
-  shader.set("maximumValue", maximum);
+  shader.set("colorRampType", "DISCRETE").set("classificationMode", "1").set("clip", "0");
+  shader.set("minimumValue", minimum).set("maximumValue", maximum);
   add_items(shader, map);
 }
 
@@ -142,14 +160,14 @@ std::array<int, 3> channels_of(const std::string& colour) {
 std::vector<LegendClass> classes_of(const Legend& legend, bool to_one) {
   const std::string unit = legend.unit.empty() ? "" : " " + legend.unit;
   const std::size_t count = legend.limits.size() + (to_one ? 0 : 1);
-  const Colours& all = colours(legend.palette);
+  const auto all = colours(legend.palette);
   constexpr double kOpen = std::numeric_limits<double>::infinity();
   std::vector<LegendClass> classes;
   std::string below;
   for (std::size_t i = 0; i < legend.limits.size(); ++i) {
     const std::string limit = plain(legend.limits[i] * legend.factor);
     const std::string label = below.empty() ? "up to " + limit : below + " to " + limit;
-    classes.push_back({i + 1 == count ? kOpen : legend.limits[i], label + unit, all[i + kColours - count]});
+    classes.push_back({i + 1 == count ? kOpen : legend.limits[i], label + unit, all[i + all.size() - count]});
     below = limit;
   }
   if (!to_one) classes.push_back({kOpen, "above " + below + unit, all.back()});
@@ -157,7 +175,8 @@ std::vector<LegendClass> classes_of(const Legend& legend, bool to_one) {
 }
 
 std::vector<LegendClass> classes_of(const Map& map) {
-  return map.classes.empty() ? classes_of(map.legend, map.kind == Map::Kind::Probability) : named_classes(map);
+  if (map.classes.empty()) return classes_of(map.legend, map.kind == Map::Kind::Probability);
+  return map.legend.limits.front() < 0.0 ? named_changes(map) : named_classes(map);
 }
 
 std::string style_of(const Map& map) {

@@ -31,6 +31,16 @@ std::uint32_t smaller(std::uint32_t a, std::uint32_t b) {
   return std::min(a, b);
 }
 
+/// The value farther from 0 of two stored ones; nodata only if both are. The larger one of -1 and 1.
+float farther(float a, float b) {
+  if (a == kNothing<float>) return b;
+  if (b == kNothing<float>) return a;
+  return std::abs(a) == std::abs(b) ? std::max(a, b) : std::abs(a) > std::abs(b) ? a : b;
+}
+std::uint32_t farther(std::uint32_t a, std::uint32_t b) {
+  return larger(a, b);
+}
+
 }  // namespace
 
 template <>
@@ -199,11 +209,11 @@ void TilePyramid<T>::raise(const Place& place, TileStore& store, const Put& put)
   finish(above, pixels, store);
 }
 
-/// Puts a tile into its quarter of the one above: each pixel has the largest or the smallest of the values under it.
+/// Puts a tile into its quarter of the one above: each pixel has one of the values under it, as the map chooses.
 template <class T>
 void TilePyramid<T>::halve(const Place& from, const Pixels& pixels, Pixels& to) const {
-  const auto chosen = [smallest = map_.smallest_in_overviews](T a, T b) {
-    return smallest ? smaller(a, b) : larger(a, b);
+  const auto chosen = [smallest = map_.smallest_in_overviews, farthest = map_.farthest_in_overviews](T a, T b) {
+    return farthest ? farther(a, b) : smallest ? smaller(a, b) : larger(a, b);
   };
   const int wide = columns_of(from), high = rows_of(from);
   const int first_x = from.x % 2 * side_ / 2, first_y = from.y % 2 * side_ / 2;

@@ -34,8 +34,9 @@ void describe(GDALDataset& file, const Map& map, const MapTarget& target) {
   file.SetMetadataItem("TITLE", map.title.c_str());
   file.SetMetadataItem("TIFFTAG_IMAGEDESCRIPTION", map.title.c_str());
   file.SetMetadataItem("TIFFTAG_SOFTWARE", ("Talus " + std::string(version())).c_str());
-  file.SetMetadataItem("OVERVIEWS", map.smallest_in_overviews ? "smallest value of the cells under a pixel"
-                                                              : "largest value of the cells under a pixel");
+  file.SetMetadataItem("OVERVIEWS", map.farthest_in_overviews   ? "value farthest from 0 of the cells under a pixel"
+                                    : map.smallest_in_overviews ? "smallest value of the cells under a pixel"
+                                                                : "largest value of the cells under a pixel");
   for (std::size_t b = 0; b < map.bands.size(); ++b) {
     GDALRasterBand* band = file.GetRasterBand(static_cast<int>(b) + 1);
     band->SetDescription(map.bands[b].name.c_str());

@@ -84,6 +84,10 @@ ALGORITHMS = [
      "advanced": {"fit", "trials", "parameters", "test-trials", "most-effects", "level", "base-fits", "all-rows", "nested",
                   "no-nested", "folds", "quick-folds", "no-quick-folds"},
      "files": {"fitted": "fitted.toml", "report": "report.html", "record": "diagnosis.json"}},
+    {"id": "compare", "command": "compare", "help": "compare", "order": ["first", "second", "more", "rasters", "out"],
+     "phases": ["compare", "write"], "folder": "out",
+     "rasters": ["highest_hazard_class", "highest_energy", "change_annual_frequency", "change_impact_probability", "change_energy"],
+     "files": {"table": "compare.csv"}},
     {"id": "report", "command": "report", "help": "report", "phases": []},
 ]
 
@@ -251,8 +255,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
 
     @staticmethod
     def _preselected(p):
-        """The folder of the results on top of the map, where the folder of a run is asked for."""
-        return results.latest_folder(QgsProject.instance()) if p["positional"] else None
+        """The folder of the results on top of the map, where the folder of a run is asked for; not for further runs."""
+        return results.latest_folder(QgsProject.instance()) if p["name"] in ("folder", "first") else None
 
     def _help(self, p):
         several = p["name"] in self.table.get("several", ())

@@ -73,10 +73,19 @@ def _title_in_run(title, entry, settings):
     return title + counted.get(settings.get("output.count_rotation", ("", ""))[0], "") if entry.get("counts_energy") else title
 
 
+def _record_of_run(folder):
+    """The run.json of a folder; of a comparison that of its last run, as talus.qgs has it."""
+    compared = os.path.join(folder, "compare.json")
+    if os.path.exists(compared):
+        with open(compared, encoding="utf-8") as file:
+            folder = json.load(file)["runs"][-1]
+    return os.path.join(folder, "run.json")
+
+
 def _settings_of(folder):
     """(value, unit) of the settings of a run, by their keys; none in a folder without a record."""
     try:
-        with open(os.path.join(folder, "run.json"), encoding="utf-8") as file:
+        with open(_record_of_run(folder), encoding="utf-8") as file:
             return {s["key"]: (str(s["value"]), s.get("unit", "")) for s in json.load(file)["settings"]}
     except (OSError, ValueError, KeyError, TypeError):
         return {}
@@ -166,13 +175,13 @@ def _in_lines(of_areas):
 
 
 def _is_hazard_class(layer):
-    return os.path.basename(layer.source()) == "hazard_class.tif"
+    return os.path.basename(layer.source()) in ("hazard_class.tif", "highest_hazard_class.tif")
 
 
 def _inputs_of(folder, role):
     """The paths that a run has read as its `dem`, `sources` or `barriers`; none in a folder without a record."""
     try:
-        with open(os.path.join(folder, "run.json"), encoding="utf-8") as file:
+        with open(_record_of_run(folder), encoding="utf-8") as file:
             return [read["path"] for read in json.load(file)["inputs"] if read["role"] == role]
     except (OSError, ValueError, KeyError, TypeError):
         return []

@@ -88,6 +88,10 @@ LABELS = {
     "quick-folds": ("Do not choose the effects anew in a fold", "In den Teilen die Effekte nicht neu wählen"),
     "no-quick-folds": ("Always choose them anew in a fold", "Sie in den Teilen immer neu wählen"),
     "campaign": ("Campaigns (campaign.toml)", "Messkampagnen (campaign.toml)"),
+    "first": ("Folder of run A", "Ordner des Laufs A"),
+    "second": ("Folder of run B", "Ordner des Laufs B"),
+    "more": ("Folder of a further run", "Ordner eines weiteren Laufs"),
+    "rasters": ("Rasters", "Raster"),
     "title": ("Title", "Titel"),
     "attribution": ("Attribution of terrain and maps", "Quellenangabe zu Gelände und Karten"),
     "load": ("Load the results into the map", "Ergebnisse in die Karte laden"),
@@ -104,6 +108,7 @@ KEYS = {
     "algorithm profile": ("2D model on a profile", "2D-Modell auf einem Profil"),
     "algorithm calibrate": ("Calibrate the ground", "Boden kalibrieren"),
     "algorithm diagnose": ("Diagnose what a model lacks", "Diagnose: was dem Modell fehlt"),
+    "algorithm compare": ("Compare runs", "Läufe vergleichen"),
     "algorithm report": ("Report (HTML)", "Bericht (HTML)"),
     "about run": ("Simulates falling blocks from the sources over the terrain and maps how often, how fast and how high they "
                   "pass each cell. Give terrain, sources and a diameter, or a scenario file. Cancel keeps what was traced; "
@@ -136,11 +141,16 @@ KEYS = {
                         "Passt die Parameter des Bodens an gemessene Stürze an."),
     "about diagnose": ("Finds what a fitted model leaves of measured data, and which effect explains it.",
                        "Findet, was ein angepasstes Modell von den Messungen übrig lässt, und welcher Effekt es erklärt."),
+    "about compare": ("Runs over the same terrain side by side, as with and without forest: the worse value of each cell, the "
+                      "change from A to B, and a table of what differs.",
+                      "Läufe über demselben Gelände im Vergleich, etwa mit und ohne Wald: der schlimmere Wert jeder Zelle, die "
+                      "Änderung von A zu B und eine Tabelle der Unterschiede."),
     "about report": ("One self-contained HTML page on a run: maps, tables, checklist. Run it last.",
                      "Eine eigenständige HTML-Seite über einen Lauf: Karten, Tabellen, Prüfliste. Zuletzt ausführen."),
     "phase simulate": ("Simulating", "Simuliert"),
     "phase write": ("Writing the results", "Schreibt die Ergebnisse"),
     "phase evaluate": ("Evaluating the cells", "Wertet die Zellen aus"),
+    "phase compare": ("Comparing the cells", "Vergleicht die Zellen"),
     "phase fit": ("Fitting", "Passt an"),
     "phase diagnose": ("Diagnosing", "Diagnose"),
     # titles of layers that are not in talus.qgs
@@ -261,6 +271,13 @@ GERMAN = {
     "no crossing": "kein Durchgang",
     "too few crossings for a design": "zu wenige Durchgänge für eine Bemessung",
     "Line of the barrier, by stretch": "Linie des Schutznetzes, je Abschnitt",
+    "3 or more classes lower": "3 oder mehr Stufen tiefer",
+    "2 classes lower": "2 Stufen tiefer",
+    "1 class lower": "1 Stufe tiefer",
+    "the same class": "dieselbe Stufe",
+    "1 class higher": "1 Stufe höher",
+    "2 classes higher": "2 Stufen höher",
+    "3 or more classes higher": "3 oder mehr Stufen höher",
     "none": "keine",
     "residual": "Restgefährdung",
     "low": "gering",
@@ -478,7 +495,20 @@ GERMAN = {
     "whose terrain and maps these are, below every map; what the DEM states where it is not given":
         "von wem Gelände und Karten sind, unter jeder Karte; was das DGM angibt, wenn nicht angegeben",
     "replace an earlier page of talus report": "eine frühere Seite ersetzen",
+    "OUT of talus run: run A": "Ergebnisse eines Laufs",
+    "OUT of another run over the same DEM: run B": "Ergebnisse eines anderen Laufs über demselben DGM",
+    "further runs: C, D, ...": "für den höchsten Wert von mehr als zwei Läufen; dann ohne Änderung",
+    "new folder for the comparison": "neuer Ordner für den Vergleich",
+    "names without ending, such as energy,return_period_300; else, of those that all runs have, hazard_class, "
+    "annual_frequency, impact_probability, reach_probability, energy, jump_height, velocity":
+        "Namen ohne Endung, etwa energy,return_period_300; sonst von denen, die alle Läufe haben, hazard_class, "
+        "annual_frequency, impact_probability, reach_probability, energy, jump_height, velocity",
+    "replace the folder if it holds an earlier comparison": "den Ordner ersetzen, wenn er einen früheren Vergleich enthält",
 }
+# Titles of the rasters of talus compare.
+GERMAN.update({begin + title: german_begin + of_run
+               for begin, german_begin in (("Highest: ", "Höchster Wert: "), ("Lowest: ", "Tiefster Wert: "), ("Change: ", "Änderung: "))
+               for title, of_run in GERMAN.items()})
 
 
 def german():

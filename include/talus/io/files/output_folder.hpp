@@ -31,7 +31,7 @@ class OutputFolder {
   /// Throws InputError if the name is taken, if another process writes a result of this name, if there are files in it
   /// that are not of this result, or if nothing can be written there.
   /// @param overwrite  an earlier result of the same command may be replaced (it holds a run.json, part.json,
-  /// calibration.json or diagnosis.json)
+  /// calibration.json, diagnosis.json or compare.json)
   /// @param command    that writes the results; parts and merged ones are those of "talus run", too
   OutputFolder(const std::filesystem::path& path, bool overwrite, Unfinished unfinished = Unfinished::Ignore,
                std::string command = "talus run");

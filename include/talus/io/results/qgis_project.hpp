@@ -19,6 +19,8 @@ struct ProjectGround {
   std::vector<Setting> settings{};  ///< of the run; titles name some of them
 };
 ProjectGround ground_of(const LoadedScenario& loaded);
+/// The ground of the run in a folder, from its run.json. Throws InputError or an exception of the record.
+ProjectGround ground_of_run(const std::filesystem::path& folder);
 
 /// A project of QGIS (3.22 and later) that opens the results of a folder as one group: layers with their tables, the
 /// sources and barriers of the run, maps with the hazard class on top, with titles and in their styles, over a

@@ -31,7 +31,7 @@ struct MapTarget {
 ///
 /// Overviews: a pixel has the LARGEST value of the cells under it (nodata only if all are), band by band. Averages or
 /// samples would thin out narrow paths, so that a hazard disappears from view when one zooms out. A return period has
-/// the SMALLEST value, for the same reason.
+/// the SMALLEST value, and a change the one farthest from 0, for the same reason.
 /// Counts above 4294967294 are written as that. The bytes depend on the values only: no dates, no number of threads.
 ///
 /// Nothing half-written is left if a part fails or is never written. The map and the target must outlive it.
