@@ -1144,6 +1144,35 @@ class FromPython(Case):
         self.assertGreater(len(hazard.renderer().legendSymbologyItems()), 2)
         QgsProject.instance().clear()
 
+    def test_a_layer_of_the_user_in_a_group_stays_visible(self):
+        """Results of another folder hide those before them, not a net that QGIS put into their group."""
+        groups = {}
+        for name in ("a", "b"):
+            context = QgsProcessingContext()
+            self.run_algorithm("run", self.inputs(OUT=self.path(name), LOAD=True), context=context)
+            self.load(context)
+            groups[name] = next(g for g in QgsProject.instance().layerTreeRoot().findGroups() if g.name() == "Talus: " + name)
+            if name == "a":
+                net = QgsVectorLayer("LineString?crs=EPSG:2056", "net", "memory")
+                QgsProject.instance().addMapLayer(net, False)
+                groups["a"].insertLayer(0, net)
+        self.assertEqual([node.name() for node in groups["a"].findLayers() if node.isVisible()], ["net"])
+        self.assertTrue(any(node.isVisible() for node in groups["b"].findLayers()))
+        QgsProject.instance().clear()
+
+    def test_results_where_no_folder_can_be_made_are_refused(self):
+        with open(self.path("file"), "w", encoding="utf-8"):
+            pass
+        log = Log()
+        _, good = self.run_algorithm("run", self.inputs(SOURCES=self.cliffs_in_memory(), OUT=self.path("file/out")), log)
+        self.assertFalse(good)
+        self.assertIn("no folder can be made there (Not a directory): name another folder", log.textLog())
+
+    def test_effects_without_a_file(self):
+        _, good = self.run_algorithm("run", self.inputs(EFFECT="block-mass.preset=measured; rest-in-roughness.kappa=0.1"))
+        self.assertTrue(good)
+        self.assertEqual([use["name"] for use in self.record()["effects"]], ["block-mass", "rest-in-roughness"])
+
     def test_a_comparison_is_a_group_with_styles(self):
         """Over the hillshade and with the sources of the runs, as its talus.qgs; titles say which energy the runs count."""
         for name, ground in (("a", "upper-talus-3d"), ("b", "lower-talus-3d")):

@@ -28,9 +28,11 @@ std::string no_number_text(const std::string& text, const std::string& unit, boo
       "must be a number" + unit + ", with a point for decimals" +
       (may_lack ? std::string(", or ") + (in_layer ? "NULL" : "empty") + " where it is not known" : std::string());
   if (!in_layer) return wanted;
-  const bool comma = text.find(',') != std::string::npos;
-  return wanted + ": in QGIS make a number field of it with the field calculator, to_real(" +
-         (comma ? "replace(the field, ',', '.'))" : "the field)");
+  std::string number = "the field";
+  if (text.find_first_not_of("0123456789.,- ") != std::string::npos)  // a unit
+    number = "regexp_replace(" + number + ", '[^0-9.,]', '')";
+  if (text.find(',') != std::string::npos) number = "replace(" + number + ", ',', '.')";
+  return wanted + ": in QGIS make a number field of it with the field calculator, to_real(" + number + ")";
 }
 
 }  // namespace

@@ -100,7 +100,11 @@ def _restricted(definition):
 def _kept(inputs, name):
     """A temporary folder to write an input into, and a list for the place at which it is kept: a folder of `inputs` named
     after the parameter and the content. Nothing is left of an input that was not written to its end."""
-    os.makedirs(inputs, exist_ok=True)
+    try:
+        os.makedirs(inputs, exist_ok=True)
+    except OSError as error:
+        raise QgsProcessingException(tr("{folder}: no folder can be made there ({error}): name another folder for the "
+                                        "results").format(folder=inputs, error=error.strerror)) from error
     try:
         with tempfile.TemporaryDirectory(dir=inputs) as fresh:
             place = []

@@ -487,6 +487,14 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
                 own.addLayer(layer).setExpanded(False)
         for group in marked:  # candidate sources are marked by their file, and stay
             if group is not own and os.path.isdir(self.folder) and os.path.isdir(group.customProperty(GROUP_MARK)):
-                group.setItemVisibilityChecked(False)
+                self._hide(group)
         own.setItemVisibilityChecked(True)
         return own
+
+    @staticmethod
+    def _hide(group):
+        """Hides the results in a group; a layer of the user's own, which QGIS may have put there, stays as it is."""
+        of_talus = [node for node in group.findLayers() if node.layer() is None or node.layer().customProperty(TITLE_MARK)]
+        hidden = [group] if len(of_talus) == len(group.findLayers()) else of_talus
+        for node in hidden:
+            node.setItemVisibilityChecked(False)

@@ -204,6 +204,8 @@ GERMAN = {
     "talus ended with code {code}": "talus endete mit Code {code}",
     "{name} has no coordinate system: set it in QGIS (layer > Set CRS)":
         "{name} hat kein Koordinatensystem: in QGIS setzen (Layer > KBS setzen)",
+    "{folder}: no folder can be made there ({error}): name another folder for the results":
+        "{folder}: dort kann kein Ordner angelegt werden ({error}): einen anderen Ordner für die Ergebnisse nennen",
     "{path} has several layers ({names}): name one, as {path}|layername={first}":
         "{path} hat mehrere Layer ({names}): einen nennen, als {path}|layername={first}",
     "{name} has no feature: is nothing selected, or does a filter hide all?":
