@@ -55,7 +55,8 @@ void IdleFeatures::warn(const Raster<std::uint8_t>& cells, std::vector<std::stri
   for (const auto& [name, value] : marked_)
     if (!left[value]) under.push_back(name);
   add(under, "covered by later ones, so that none of their name is left", ": the last in the file counts");
-  add(takers_, "that overlap others, in " + std::to_string(taken_) + (taken_ == 1 ? " cell" : " cells"), ": the last in the file counts there");
+  add(takers_, "that overlap others, in " + std::to_string(taken_) + (taken_ == 1 ? " cell" : " cells"),
+      ": the last in the file counts there");
   add(narrow_, "that cover no cell of the DEM (its centre counts) and have no effect",
       ": draw them wider than a cell, " + with_digits(std::max(grid.cell_x, grid.cell_y), 3) + " m");
 }

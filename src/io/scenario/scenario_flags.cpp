@@ -103,7 +103,8 @@ void lay_effects(ScenarioSpec& spec, const std::vector<std::string>& flags, std:
       effect->value.members.push_back({key, toml_value(trimmed(flag.substr(equals + 1)))});
   }
   if (!flags.empty())
-    read_effects(spec, {&effects, "effects", "flag --effect", faults}, std::filesystem::current_path(), "flag --effect");
+    read_effects(spec, {&effects, "effects", "flag --effect", faults}, std::filesystem::current_path(),
+                 "flag --effect");
 }
 
 /// --sources-layer NAME: the layer of the file of sources, also of one that the scenario names.
