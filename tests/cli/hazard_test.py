@@ -243,6 +243,9 @@ class Hazard(OneThread, KeptRuns, Case):
         for name in ("annual_frequency", "return_period_30", "intensity_T100", "hazard_class"):
             self.assertEqual(self.hashes("out")[name + ".tif"], self.hashes("other")[name + ".tif"], name)
         self.refused("has changed since the run", "hazard", self.path("out"), "--frequency", new, "--overwrite")
+        for again, dropped in ((1, True), (2, False)):  # only the first time there is a weighting to lose
+            said = self.run_well("hazard", self.path("out"), "--overwrite").stderr
+            self.assertEqual(f"frequencies are those of the run, no longer those of {new}" in said, dropped, said)
         self.refused("no such feature", "hazard", self.path("other"), "--overwrite", "--frequency",
                      self.write("bad.toml", "[features]\neats = 1\n"))
 

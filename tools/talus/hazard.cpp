@@ -230,12 +230,34 @@ talus::io::ObjectFields object_fields(const HazardOptions& options) {
 }
 
 /// Files of an earlier command that this one has not made, but for the style of marks that no cell has now.
-std::vector<std::string> not_asked_for(const talus::io::StagedFiles& staged) {
+std::vector<std::string> removed_by(const talus::io::StagedFiles& staged) {
   std::vector<std::string> names = staged.to_remove();
   std::erase_if(names, [](const std::string& name) {
     return std::ranges::count(talus::io::project_layers(), name, &talus::io::ProjectLayer::style) > 0;
   });
   return names;
+}
+
+/// What an earlier talus hazard in the folder had and this one has not.
+struct NotAskedFor {
+  std::vector<std::string> files;
+  std::string frequency;  // the file of its frequencies
+
+  void tell() const {
+    if (!files.empty())
+      say(std::ranges::count(files, "objects.csv") > 0 ? "warning" : "",
+          "removed, as not asked for this time: " + talus::joined(files) + kEarlier);
+    if (!frequency.empty())
+      say("warning", "frequencies are those of the run, no longer those of " + frequency + kEarlier +
+                         ": to keep them give --frequency");
+  }
+
+ private:
+  static constexpr const char* kEarlier = " (of the earlier talus hazard in this folder)";
+};
+
+NotAskedFor not_asked_for(const HazardOptions& options, const talus::io::StagedFiles& staged) {
+  return {removed_by(staged), options.frequency.empty() ? talus::io::frequency_file_of(options.folder) : ""};
 }
 
 int hazard(const HazardOptions& options) {
@@ -282,14 +304,11 @@ int hazard(const HazardOptions& options) {
   if (layer) objects = write_objects(options, *plan, *layer, staged.temporary(), record);
   record.files = staged.files();
   talus::io::write_text(staged.temporary() / "hazard.json", talus::io::hazard_json(record));
-  const std::vector<std::string> removed = not_asked_for(staged);
+  const NotAskedFor not_asked = not_asked_for(options, staged);
   staged.commit();
   refresh_project(folder);
   if (options.quiet) return 0;
-  if (!removed.empty())
-    say(std::ranges::count(removed, "objects.csv") > 0 ? "warning" : "",
-        "removed, as not asked for this time: " + talus::joined(removed) +
-            " (of the earlier talus hazard in this folder)");
+  not_asked.tell();
   for (const std::string& warning : record.warnings) say("warning", warning);
   say_old_report(folder);
   for (const std::string& object : objects) say("", object);

@@ -357,9 +357,10 @@ void add_surface(CLI::App& command, std::optional<std::string>& surface) {
 
 void add_effects(CLI::App& command, std::vector<std::string>& effects) {
   command
-      .add_option("--effect", effects,
-                  "NAME.KEY=VALUE: a number of an effect, as block-mass.preset=measured (docs/effects.md); several with "
-                  "; between them; may be repeated")
+      .add_option(
+          "--effect", effects,
+          "NAME.KEY=VALUE: a number of an effect, as block-mass.preset=measured (docs/effects.md); several with "
+          "; between them; may be repeated")
       ->allow_extra_args(false);
 }
 

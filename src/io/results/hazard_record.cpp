@@ -107,4 +107,12 @@ std::string hazard_json(const HazardRecord& record) {
   return json_text(json);
 }
 
+std::string frequency_file_of(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "hazard.json";
+  if (!std::filesystem::exists(file)) return {};
+  const Json record = read_record(file);
+  const Json name = record.value("frequency", Json::object()).value("file", Json());
+  return name.is_string() ? name.get<std::string>() : "";
+}
+
 }  // namespace talus::io

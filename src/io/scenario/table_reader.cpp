@@ -106,7 +106,8 @@ void TableReader::finish() {
   if (table_ == nullptr) return;
   for (const auto& [key, value] : table_->members)
     if (std::find(known_.begin(), known_.end(), key) == known_.end())
-      faults_.push_back(at(value) + ": unknown key '" + key + "' " + (name_.empty() ? "at the top" : "in [" + name_ + "]") + known_names(key, known_));
+      faults_.push_back(at(value) + ": unknown key '" + key + "' " +
+                        (name_.empty() ? "at the top" : "in [" + name_ + "]") + known_names(key, known_));
 }
 
 }  // namespace talus::io

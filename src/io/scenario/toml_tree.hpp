@@ -6,7 +6,8 @@ namespace talus::io {
 
 struct TomlMember;
 
-/// A value of a TOML file with its line (0: from a flag). Other files use this instead of toml++, which is slow to compile.
+/// A value of a TOML file with its line (0: from a flag). Other files use this instead of toml++, which is slow to
+/// compile.
 struct TomlValue {
   enum class Kind { Boolean, Number, Text, List, Table, Date };
 

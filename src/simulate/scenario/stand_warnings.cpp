@@ -44,9 +44,10 @@ std::string thick_text(double basal_area) {
 /// Warns where the effects are off without which stems do not act as a forest does.
 void warn_of_stems_alone(const Effects& effects, std::vector<std::string>& warnings) {
   if (!find_effect("block-mass")->acts(effects))
-    warnings.push_back(std::string(kForest) +
-                       "holds large blocks best without [effects.block-mass], forests hold small ones (unsafe for large "
-                       "ones): add --effect block-mass.preset=measured, see docs/effects.md");
+    warnings.push_back(
+        std::string(kForest) +
+        "holds large blocks best without [effects.block-mass], forests hold small ones (unsafe for large "
+        "ones): add --effect block-mass.preset=measured, see docs/effects.md");
   if (!find_effect("rest-in-roughness")->acts(effects))
     warnings.push_back(std::string(kForest) +
                        "keeps few blocks without [effects.rest-in-roughness]: one that a stem has stopped moves on "

@@ -29,4 +29,8 @@ struct HazardRecord {
 /// The text of hazard.json.
 std::string hazard_json(const HazardRecord& record);
 
+/// The file of other frequencies with which the hazard in a folder was made; empty: none, or there is no hazard.
+/// Throws InputError if its hazard.json cannot be read.
+std::string frequency_file_of(const std::filesystem::path& folder);
+
 }  // namespace talus::io
