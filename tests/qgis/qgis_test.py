@@ -1169,8 +1169,11 @@ class FromPython(Case):
         self.assertIn("no folder can be made there (Not a directory): name another folder", log.textLog())
 
     def test_effects_without_a_file(self):
-        _, good = self.run_algorithm("run", self.inputs(EFFECT="block-mass.preset=measured; rest-in-roughness.kappa=0.1"))
+        log = Log()
+        _, good = self.run_algorithm("run", self.inputs(EFFECT="block-mass.preset=measured; rest-in-roughness.kappa=0.1"), log)
         self.assertTrue(good)
+        (low,) = [text for text in log.warnings if "may be too low (unsafe): c = 0.25" in text]
+        self.assertIn('In this dialog --deformation-coefficient is "', low)
         self.assertEqual([use["name"] for use in self.record()["effects"]], ["block-mass", "rest-in-roughness"])
 
     def test_a_comparison_is_a_group_with_styles(self):

@@ -75,7 +75,8 @@ class Progress:
 
 
 class Messages:
-    """Sorts what the program says into the log; keeps the error. `explain` adds to an error what the dialog calls its flags."""
+    """Sorts what the program says into the log; keeps the error. `explain` adds to errors and
+    warnings what the dialog calls their flags."""
 
     def __init__(self, feedback, progress, explain):
         self.feedback = feedback
@@ -98,8 +99,8 @@ class Messages:
         if "phase" in line:
             self.progress.show(line)
         for kind, text in line.items():
-            if kind == "warning":
-                self.feedback.pushWarning(text)
+            if kind == "warning" or (kind == "message" and text.startswith("note: ")):
+                self._warn(text.removeprefix("note: "))
             elif kind == "error":
                 self._fail(text)
             elif kind == "message":
@@ -107,15 +108,18 @@ class Messages:
 
     def _take_text(self, stream, text):
         if text.startswith("talus: warning: "):
-            self.feedback.pushWarning(text[len("talus: warning: "):])
+            self._warn(text[len("talus: warning: "):])
         elif text.startswith("talus: error: "):
             self._fail(text[len("talus: error: "):])
         elif stream == "stdout" and text.startswith("warning "):  # of talus check
-            self.feedback.pushWarning(text[len("warning "):].strip())
+            self._warn(text[len("warning "):].strip())
         elif text.startswith(("note: ", "warning: ")):  # below the table of talus barrier
-            self.feedback.pushWarning(text.split(": ", 1)[1])
+            self._warn(text.split(": ", 1)[1])
         else:
             self.feedback.pushConsoleInfo(aligned(text))
+
+    def _warn(self, text):
+        self.feedback.pushWarning(self.explain(text))
 
     def _fail(self, text):
         text = self.explain(text)
