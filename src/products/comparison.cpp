@@ -138,7 +138,7 @@ void take_change(const ComparedRaster& raster, std::span<const std::vector<doubl
       const double a = cell[0][band], b = cell[1][band];
       const bool neither = std::isnan(a) && std::isnan(b), both = !std::isnan(a) && !std::isnan(b);
       const auto or_zero = [](double value) { return std::isnan(value) ? 0.0 : value; };
-      *to++ = neither || (raster.lower_is_worse && !both) ? kNotGiven : or_zero(b) - or_zero(a);
+      *to++ = neither || (!raster.zero_is_value && !both) ? kNotGiven : or_zero(b) - or_zero(a);
     }
     if (!raster.has_bounds()) return;
     const bool apart = is_surely_worse(raster, cell[0], cell[1]) || is_surely_worse(raster, cell[1], cell[0]);
@@ -149,6 +149,8 @@ void take_change(const ComparedRaster& raster, std::span<const std::vector<doubl
 
 void ComparedCells::add(const ComparedRaster& raster, std::span<const std::vector<double>> runs) {
   for_each_cell(raster, runs, [&](std::span<const std::span<const double>> cell) {
+    const auto unknown = [&](std::span<const double> run) { return std::isnan(run[raster.shown_band()]); };
+    if (!raster.zero_is_value && !raster.lower_is_worse && std::ranges::any_of(cell, unknown)) return;  // no terrain
     std::size_t many = 0, last = 0;
     for (std::size_t run = 0; run < cell.size(); ++run) {
       if (!raster.reached(cell[run])) continue;

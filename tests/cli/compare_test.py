@@ -44,9 +44,16 @@ class Compare(KeptRuns, OneThread, RunCase):
     def figures(self, out="c"):
         return {(row["table"], row["name"], row["quantity"]): row for row in self.read_table(out + "/compare.csv")}
 
+    def test_a_folder_in_a_run_is_refused(self):
+        self.keep_run("a")
+        self.fails(2, "lies in", "give a folder beside it",
+                   arguments=["compare", self.path("a"), self.path("a"), "-o", self.path("a/c")])
+        self.assertFalse(os.path.exists(self.path("a/c")))
+
     def test_a_run_with_itself(self):
         self.keep_run("a")
         self.compare("a", "a")
+        self.assertIn("is the same folder as", self.read_text("c/compare.md"))
         found = sorted(name for name in os.listdir(self.path("c")) if name.endswith(".tif"))
         self.assertEqual(found, sorted(kind + name + ".tif" for kind in ("highest_", "change_") for name in RASTERS))
         for name in RASTERS:
@@ -234,11 +241,21 @@ class Compare(KeptRuns, OneThread, RunCase):
                           "--trajectories", "5", "-o", self.path(name), "-q")
             self.refused(self.path(name), *words, folders=("a", name))
 
+    def test_another_weighting_is_said(self):
+        for name in ("a", "b"):
+            self.keep(name, ["run", self.path("s.toml"), "-o", self.path(name), "-q", "--trajectories", "10"])
+        self.run_well("hazard", self.path("a"), "-q")
+        weights = self.write("w.toml", "[frequency]\ntotal = 50\n")
+        self.run_well("hazard", self.path("b"), "-q", "--frequency", weights)
+        text = self.compare("a", "b").stdout
+        self.assertRegex(text, r"talus hazard --frequency +\| +\| +\| +\| " + weights)
+        self.assertRegex(text, r"events of the hazard +\| +\| 1/year +\| 0.52 +\| 50")
+
     def test_what_is_said(self):
         self.keep_run("a")
         self.keep("b", ["run", self.path("s.toml"), "-o", self.path("b"), "-q", "--trajectories", "20", "--seed", "3"])
         text = self.compare("a", "b").stdout
-        for words in ("annual_frequency.tif is not compared", self.path("b") + " has none (talus hazard makes it)",
+        for words in ("annual_frequency.tif is not compared", self.path("b") + " has none (talus run or talus hazard makes it)",
                       "different numbers of blocks", "different seeds"):
             self.assertIn(words, text)
         z = heights()

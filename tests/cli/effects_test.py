@@ -63,6 +63,13 @@ class Effects(Case):
         self.assertEqual(self.setting(self.record("flags"), "effects.rest-in-roughness.kappa"), [0.3])
         self.assert_replays("flags")
 
+    def test_a_flag_that_takes_a_place_away_says_so(self):
+        write_features(self.path("stand.gpkg"), "stand", [(box(0, 150, 300, 50), [])])
+        self.write("s.toml", HEAD + '[effects.forest-stems]\ndensity = 300\nfile = "stand.gpkg"\n')
+        self.write("trees.csv", f"x,y,diameter\n{WEST + 100},{NORTH - 100},0.3\n")
+        done = self.run_well("check", self.path("s.toml"), "--effect", "forest-stems.trees=" + self.path("trees.csv") + ";")
+        self.assertIn("flag --effect: takes the place of file of [effects.forest-stems]", done.stdout)
+
     def test_wrong_flags_are_refused(self):
         self.write("s.toml", HEAD)
         for flag, words in (("block-mass", ["must be NAME.KEY=VALUE, for example block-mass.preset=measured"]),

@@ -80,6 +80,11 @@ TEST_F(Zones, WholeNumbersAndNull) {
   EXPECT_EQ(count(layer, 1), 2);  // NULL: the default ground again
   EXPECT_TRUE(said(layer.warnings, "1 of 2 features have no code: the default ground is there"));
   EXPECT_TRUE(said(layer.warnings, "zones that overlap others, in 1 cell: FID 2"));
+  const ZoneLayer abutting =
+      polygons({{"Code", OFTInteger}},  // along a line of centres
+               {{"POLYGON((0 0,30 0,30 15,0 15,0 0))", {"12"}}, {"POLYGON((0 15,30 15,30 30,0 30,0 15))", {"13"}}},
+               {"12", "13"}, "code");
+  EXPECT_FALSE(said(abutting.warnings, "overlap"));
 }
 
 TEST_F(Zones, AZoneThatIsNotDescribedIsNamedWithThoseThatAre) {

@@ -23,12 +23,23 @@ struct CompareOptions {
   bool overwrite = false, quiet = false;
 };
 
+/// Whether a path, which need not be there, is a folder below another one.
+bool is_below(const fs::path& path, const fs::path& folder) {
+  const fs::path away = fs::weakly_canonical(path).lexically_relative(fs::weakly_canonical(folder));
+  return !away.empty() && away != "." && *away.begin() != "..";
+}
+
 int compare(const CompareOptions& options) {
   talus::io::ComparisonRecord record;
   record.command = command_line();
   std::vector<std::string> folders{options.first, options.second};
   folders.insert(folders.end(), options.more.begin(), options.more.end());
   const talus::io::ComparedRuns runs(folders, options.rasters);
+  for (const std::string& run : folders)
+    if (is_below(options.out, run))
+      throw talus::InputError(options.out + ": lies in " + run +
+                              ", results of talus run, which --overwrite could then "
+                              "not replace; give a folder beside it");
   catch_signals();
   talus::io::OutputFolder folder(options.out, options.overwrite, talus::io::OutputFolder::Unfinished::Ignore,
                                  "talus compare");

@@ -3,10 +3,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "talus/base/text.hpp"
 
 namespace talus::io {
+
+namespace {
+
+/// Whether two features share more than some area [m2]: a common edge through centres of cells is none.
+bool overlap(const Parts& one, const Parts& other, double least) {
+  double area = 0.0;
+  for (const OGRPolygon& a : one.polygons)
+    for (const OGRPolygon& b : other.polygons) {
+      if (a.Intersects(&b) == 0) continue;
+      const std::unique_ptr<OGRGeometry> common(a.Intersection(&b));
+      if (common) area += OGR_G_Area(OGRGeometry::ToHandle(common.get()));
+    }
+  return area > least;
+}
+
+}  // namespace
 
 CoveredCells mark_cells(const Parts& feature, std::uint8_t value, const Terrain& terrain, Raster<std::uint8_t>& cells) {
   CoveredCells covered;
@@ -31,7 +48,11 @@ void IdleFeatures::mark(const std::string& name, const Parts& feature, const std
     return off_.push_back(name);
   const std::uint8_t given = value();
   const CoveredCells covered = mark_cells(feature, given, terrain_, cells);
-  if (covered.taken > 0) takers_.push_back(name), taken_ += covered.taken;
+  if (covered.taken > 0 && std::ranges::any_of(earlier_, [&](const auto& other) {
+        return other.second != given && overlap(feature, other.first, 0.01 * grid.cell_x * grid.cell_y);
+      }))
+    takers_.push_back(name), taken_ += covered.taken;
+  if (given != 0 && covered.all > 0) earlier_.emplace_back(feature, given);
   if (covered.all == 0)
     narrow_.push_back(name);
   else if (covered.with_height == 0)

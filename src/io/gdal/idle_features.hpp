@@ -44,8 +44,9 @@ class IdleFeatures {
   const Terrain& terrain_;
   OGREnvelope box_;
   std::vector<std::string> without_geometry_, off_, narrow_, without_height_;
-  std::vector<std::string> takers_;  // features in whose cells an earlier one of another value lies
-  std::uint64_t taken_ = 0;          // these cells
+  std::vector<std::string> takers_;                           // features that overlap an earlier one of another value
+  std::uint64_t taken_ = 0;                                   // cells of both
+  std::vector<std::pair<Parts, std::uint8_t>> earlier_;       // that have cells, and their values
   std::vector<std::pair<std::string, std::uint8_t>> marked_;  // names and values of the others
 };
 

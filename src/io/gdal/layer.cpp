@@ -333,9 +333,13 @@ void Layer::add_valid(const OGRPolygon& polygon, Parts& parts, const std::string
   rings.SetNameValue("METHOD", "STRUCTURE");
   const std::unique_ptr<OGRGeometry> mended(polygon.MakeValid(rings.List()));
   const std::size_t before = parts.polygons.size();
+  double area = 0.0;
   const auto keep = [&](const auto& self, const OGRGeometry& geometry) -> void {
     const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
-    if (type == wkbPolygon && !geometry.IsEmpty()) parts.polygons.push_back(*geometry.toPolygon());
+    if (type == wkbPolygon && !geometry.IsEmpty()) {
+      parts.polygons.push_back(*geometry.toPolygon());
+      area += geometry.toPolygon()->get_Area();
+    }
     if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection) != 0)
       for (const OGRGeometry* part : *geometry.toGeometryCollection()) self(self, *part);
   };
@@ -343,7 +347,9 @@ void Layer::add_valid(const OGRPolygon& polygon, Parts& parts, const std::string
   if (parts.polygons.size() == before)
     throw InputError(where + ": polygon is invalid (" + reason +
                      ") and no area is left when it is mended: draw it anew, or delete it");
-  if (++mended_ <= 5) warnings_.push_back(where + ": polygon was invalid (" + reason + ") and was mended");
+  if (++mended_ <= 5)
+    warnings_.push_back(where + ": polygon was invalid (" + reason + ") and was mended: " + readable(area) +
+                        " m2 are left, without its inner rings; is that what was drawn?");
 }
 
 CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, CellRule rule) {

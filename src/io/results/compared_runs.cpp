@@ -40,6 +40,7 @@ struct ComparedRuns::Run {
       understood(folder / "hazard.json", "must be as talus hazard has written it; run talus hazard again", [&] {
         const Json hazard = read_record(folder / "hazard.json");
         hazard_status = hazard.value("status", "");
+        read_weighting(hazard);
         if (hazard.contains("matrix")) matrix = hazard["matrix"];
       });
     for (const char* record : {"run.json", "hazard.json"})
@@ -55,6 +56,14 @@ struct ComparedRuns::Run {
     version = record.at("version");
     seed = text_of_json(record.at("seed"));
     released = text_of_json(record.at("released"));
+  }
+  /// Another weighting of the hazard, as settings.
+  void read_weighting(const Json& hazard) {
+    const Json frequency = hazard.value("frequency", Json::object());
+    if (frequency.contains("file"))
+      settings.push_back({"talus hazard --frequency", "", text_of_json(frequency["file"])});
+    if (const Json events = hazard.value("events_per_year", Json()); events.is_number())
+      settings.push_back({"events of the hazard", "1/year", with_digits(events.get<double>(), 6)});
   }
   static std::string text_of_json(const Json& value) {
     return value.is_string() ? value.get<std::string>() : value.dump();
@@ -171,6 +180,9 @@ void ComparedRuns::note_differences() {
     notes_.emplace_back(
         "the runs have released different numbers of blocks: maxima and reached cells grow with the number, and reach "
         "probabilities fall");
+  for (const Run& run : runs_)
+    if (&run != &first && fs::equivalent(run.folder, first.folder))
+      notes_.push_back(run.name + ": is the same folder as " + first.name + ": is another one meant?");
   notes_.emplace_back(
       differs([](const Run& run) { return run.seed; })
           ? "the runs have different seeds: part of each change is chance"
@@ -197,7 +209,8 @@ std::vector<std::string> ComparedRuns::chosen(const std::vector<std::string>& as
     } else if (!asked.empty()) {
       throw InputError(without.front() + ": has no " + name + ".tif, must have it for --rasters " + name);
     } else if (!with.empty()) {
-      notes_.push_back(name + ".tif is not compared: " + joined(without) + " has none (talus hazard makes it)");
+      notes_.push_back(name + ".tif is not compared: " + joined(without) +
+                       " has none (talus run or talus hazard makes it)");
     }
   }
   if (found.empty()) throw InputError(runs_.front().name + ": has no raster that all folders have");

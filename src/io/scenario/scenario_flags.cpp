@@ -78,10 +78,20 @@ std::vector<std::string> parts_of(const std::vector<std::string>& texts) {
   for (const std::string& text : texts)
     for (std::size_t from = 0; from <= text.size();) {
       const std::size_t to = std::min(text.find(';', from), text.size());
-      parts.push_back(trimmed(text.substr(from, to - from)));
+      if (std::string part = trimmed(text.substr(from, to - from)); !part.empty()) parts.push_back(std::move(part));
       from = to + 1;
     }
   return parts;
+}
+
+/// Places and maps of an effect that flags have taken away.
+std::vector<std::string> taken_away(const EffectSpec& before, const EffectSpec& after) {
+  std::vector<std::string> lost;
+  if (!before.zones.empty() && after.zones.empty()) lost.emplace_back("zones");
+  if (!before.file.path.empty() && after.file.path.empty()) lost.emplace_back("file");
+  for (const auto& [key, map] : before.maps)
+    if (!after.maps.contains(key)) lost.push_back(key);
+  return lost;
 }
 
 /// --effect NAME.KEY=VALUE, laid over [effects].
@@ -102,9 +112,14 @@ void lay_effects(ScenarioSpec& spec, const std::vector<std::string>& flags, std:
     else
       effect->value.members.push_back({key, toml_value(trimmed(flag.substr(equals + 1)))});
   }
-  if (!flags.empty())
-    read_effects(spec, {&effects, "effects", "flag --effect", faults}, std::filesystem::current_path(),
-                 "flag --effect");
+  if (effects.members.empty()) return;
+  const std::map<std::string, EffectSpec> before = spec.effects;
+  read_effects(spec, {&effects, "effects", "flag --effect", faults}, std::filesystem::current_path(), "flag --effect");
+  for (const auto& [name, effect] : before) {
+    const std::vector<std::string> lost = taken_away(effect, spec.effects[name]);
+    if (!lost.empty())
+      spec.warnings.push_back("flag --effect: takes the place of " + joined(lost) + " of [effects." + name + "]");
+  }
 }
 
 /// --sources-layer NAME: the layer of the file of sources, also of one that the scenario names.
@@ -119,6 +134,28 @@ void lay_sources_layer(ScenarioSpec& spec, const std::string& layer, std::vector
                      spec.sources.path.substr(file.size()) + "; give one of the two");
   spec.sources.path += "|layername=" + layer;
   spec.origins["sources.file"] += ", flag --sources-layer";
+}
+
+/// Flags of [output] that name no number.
+void lay_output(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults) {
+  if (flags.energy_total) {
+    spec.values.output.energy_total = true;
+    spec.origins["output.energy_total"] = "flag --energy-total";
+  }
+  if (flags.count_rotation) {
+    spec.values.output.count_rotation = true;
+    spec.origins["output.count_rotation"] = "flag --count-rotation";
+  }
+  if (flags.bounds) {
+    spec.values.output.bounds = true;
+    spec.origins["output.bounds"] = "flag --bounds";
+  }
+  if (flags.vectors) {
+    const auto format = vector_format(*flags.vectors);
+    if (!format) faults.push_back("flag --vectors = '" + *flags.vectors + "': " + kVectorsRule);
+    spec.values.output.vectors = format.value_or(VectorFormat::GeoPackage);
+    spec.origins["output.vectors"] = "flag --vectors";
+  }
 }
 
 /// --diameter M, in place of all blocks of the scenario.
@@ -205,24 +242,7 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
   if (flags.deformation_coefficient)
     lay_flag(spec, "model.deformation_coefficient", "--deformation-coefficient", *flags.deformation_coefficient,
              faults);
-  if (flags.energy_total) {
-    spec.values.output.energy_total = true;
-    spec.origins["output.energy_total"] = "flag --energy-total";
-  }
-  if (flags.count_rotation) {
-    spec.values.output.count_rotation = true;
-    spec.origins["output.count_rotation"] = "flag --count-rotation";
-  }
-  if (flags.bounds) {
-    spec.values.output.bounds = true;
-    spec.origins["output.bounds"] = "flag --bounds";
-  }
-  if (flags.vectors) {
-    const auto format = vector_format(*flags.vectors);
-    if (!format) faults.push_back("flag --vectors = '" + *flags.vectors + "': " + kVectorsRule);
-    spec.values.output.vectors = format.value_or(VectorFormat::GeoPackage);
-    spec.origins["output.vectors"] = "flag --vectors";
-  }
+  lay_output(spec, flags, faults);
   if (flags.frequency) {
     spec.values.frequency.total = *flags.frequency;
     spec.origins["frequency.total"] = "flag --frequency";

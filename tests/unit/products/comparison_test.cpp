@@ -89,6 +89,14 @@ TEST(Comparison, ChangeIsSecondMinusFirst) {
   EXPECT_THAT(change_of(energy(), {Values(5, kNone), Values(5, kNone)}), testing::Each(NanSensitiveDoubleEq(kNone)));
 }
 
+TEST(Comparison, NothingIsKnownWhereOneRunHasNoTerrain) {
+  const Values here{0.2, 0.1, 0.3}, no_terrain(3, kNone);
+  EXPECT_TRUE(std::isnan(change_of(bounded("annual_frequency"), {here, no_terrain})[0]));
+  ComparedCells cells(2);
+  cells.add(bounded("annual_frequency"), std::vector<Values>{here, no_terrain});
+  EXPECT_THAT(cells.alone, ElementsAre(0, 0));
+}
+
 TEST(Comparison, BoundsApart) {
   const ComparedRaster raster = bounded("reach_probability");
   ASSERT_EQ(change_map(raster).bands.size(), 2U);

@@ -62,6 +62,9 @@ MUTANTS = [
     ("src/simulate/tally/barrier_counts.cpp", "passage.how == Meeting::Over ? part.over", "passage.how == Meeting::Over ? part.caught", "*Barrier*"),
     ("src/simulate/totals.cpp", "totals.impacts += part.impacts;", "", "*Totals*:*Simul*"),
     # products and hazard
+    ("src/products/comparison.cpp", "or_zero(b) - or_zero(a)", "or_zero(a) - or_zero(b)", "*Compar*"),
+    ("src/products/comparison.cpp", "run[1] > other[2];", "run[1] > other[1];", "*Compar*"),
+    ("src/products/comparison.cpp", "raster.lower_is_worse ? std::fmin(worst[i], run[i])", "false ? std::fmin(worst[i], run[i])", "*Compar*"),
     ("src/products/interval.cpp", "0.5 * (1.0 - confidence)", "(1.0 - confidence)", "*Interval*:*Bound*"),
     ("src/products/interval.cpp", "sources * (trials - 1)", "sources * trials", "*Interval*:*Reach*"),
     ("src/products/percentile_bounds.cpp", "at_most(low, count, share) <= kTail", "at_most(low + 1.0, count, share) <= kTail", "*Percentile*"),
