@@ -238,7 +238,7 @@ std::vector<std::string> removed_by(const talus::io::StagedFiles& staged) {
   return names;
 }
 
-/// What an earlier talus hazard in the folder had and this one has not.
+/// Files and frequencies of an earlier talus hazard in the folder that this command does not make again.
 struct NotAskedFor {
   std::vector<std::string> files;
   std::string frequency;  // the file of its frequencies

@@ -36,14 +36,15 @@ std::optional<ComparedRaster> compared_raster(const std::string& name);
 Map worst_map(const ComparedRaster& raster, std::size_t runs);
 Map change_map(const ComparedRaster& raster);
 
-/// The worst value of each band: the highest, of return periods the lowest. A run without a value does not reach the
-/// cell. A class is `undecided` if the classes at the worst bounds differ.
+/// The worst value of each band: the highest, of return periods the lowest; runs without a value are left out. A class
+/// is `undecided` if the classes at the worst bounds differ.
 /// @param runs  values of each run, cell by cell, band by band (`Map::fill`)
 /// @param worst  as many values
 void take_worst(const ComparedRaster& raster, std::span<const std::vector<double>> runs, std::span<double> worst);
 
-/// The second run minus the first for each band with values, where one run has none as if it were 0; of return periods
-/// nothing then. With bounds a last band: 1 where those of the two runs do not overlap, 0 where they do.
+/// The second run minus the first for each band with values. Where one run has none, it counts as 0 if `zero_is_value`
+/// (energies, speeds, heights); otherwise nothing is known. With bounds a last band: 1 where those of the two runs do
+/// not overlap, 0 where they do.
 /// @param change  for each cell the bands of `change_map`
 void take_change(const ComparedRaster& raster, std::span<const std::vector<double>> runs, std::span<double> change);
 

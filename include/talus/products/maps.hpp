@@ -12,7 +12,7 @@
 namespace talus {
 
 /// Colours of a legend, from light to dark. `PuBuGnFromDark` is from dark to light: small values are the grave ones.
-/// Those of a change are blue below 0, nothing around 0 and orange above; `ChangeReversed` the other way round.
+/// `Change`: blue below 0, no colour around 0, orange above; `ChangeReversed`: orange below, blue above.
 enum class Palette { Plasma, PuBuGnFromDark, Viridis, YlGnBu, HazardClasses, Change, ChangeReversed };
 
 /// How a map is drawn: one colour up to each limit, and one above the last limit. A probability has no colour above

@@ -329,9 +329,9 @@ void Layer::add_valid(const OGRPolygon& polygon, Parts& parts, const std::string
     return;
   }
   const std::string reason = fault_on_map(polygon);
-  CPLStringList rings;  // the default, by lines, fills a hole that shares an edge with the outer ring
-  rings.SetNameValue("METHOD", "STRUCTURE");
-  const std::unique_ptr<OGRGeometry> mended(polygon.MakeValid(rings.List()));
+  CPLStringList method;  // the default, by lines, fills a hole that shares an edge with the outer ring
+  method.SetNameValue("METHOD", "STRUCTURE");
+  const std::unique_ptr<OGRGeometry> mended(polygon.MakeValid(method.List()));
   const std::size_t before = parts.polygons.size();
   double area = 0.0;
   const auto keep = [&](const auto& self, const OGRGeometry& geometry) -> void {

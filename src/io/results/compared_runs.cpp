@@ -13,6 +13,7 @@
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/gdal/crs.hpp"
+#include "talus/io/results/hazard_record.hpp"
 #include "talus/io/results/run_record.hpp"
 
 namespace talus::io {
@@ -59,9 +60,8 @@ struct ComparedRuns::Run {
   }
   /// Another weighting of the hazard, as settings.
   void read_weighting(const Json& hazard) {
-    const Json frequency = hazard.value("frequency", Json::object());
-    if (frequency.contains("file"))
-      settings.push_back({"talus hazard --frequency", "", text_of_json(frequency["file"])});
+    if (const std::string file = frequency_file_of(folder); !file.empty())
+      settings.push_back({"talus hazard --frequency", "", file});
     if (const Json events = hazard.value("events_per_year", Json()); events.is_number())
       settings.push_back({"events of the hazard", "1/year", with_digits(events.get<double>(), 6)});
   }

@@ -33,7 +33,7 @@ constexpr Colours kYlGnBu{"#c7e9b4", "#7fcdbb", "#41b6c4", "#1d91c0", "#225ea8",
 // The classes of the Swiss matrix: yellow and white, yellow, blue, red; further ones, should there be any, darker.
 constexpr Colours kHazardClasses{"#fff9c4", "#ffd600", "#2979ff", "#d50000", "#7f0000", "#3e0000"};
 
-// Of a change: blues and oranges of ColorBrewer, which differ for the colour-blind too; around 0 none.
+// Changes have blues and oranges of ColorBrewer, which the colour-blind can tell apart; around 0 there is no colour.
 constexpr std::array kChange{"#08519c", "#3182bd", "#9ecae1", kClear, "#fdae6b", "#e6550d", "#a63603"};
 constexpr std::array kChangeReversed{"#a63603", "#e6550d", "#fdae6b", kClear, "#9ecae1", "#3182bd", "#08519c"};
 

@@ -9,7 +9,7 @@ namespace talus::io {
 /// The figures as compare.csv: one row each, a column per run.
 std::string comparison_csv(const std::vector<ComparedFigure>& figures);
 
-/// The same as compare.md: notes, then a table each for settings, rasters and screens.
+/// The text of compare.md: tables of the folders, settings, rasters and screens, then the notes.
 std::string comparison_markdown(const std::vector<ComparedFigure>& figures, const std::vector<std::string>& notes);
 
 /// Record of a comparison.
